@@ -1,7 +1,37 @@
 //! Python classes of contactsense: checks and converts, holds no algorithm.
+
 use pyo3::prelude::*;
+
+mod arrays;
+mod description;
+mod errors;
+mod isolator;
+mod monitor;
+mod observer;
+mod robot;
+mod surface;
 
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add("build_profile", if cfg!(debug_assertions) { "debug" } else { "release" })
+    module.add(
+        "build_profile",
+        if cfg!(debug_assertions) {
+            "debug"
+        } else {
+            "release"
+        },
+    )?;
+    module.add_class::<robot::PyRobot>()?;
+    module.add_class::<surface::PySurface>()?;
+    module.add_class::<surface::ClosestPoints>()?;
+    module.add_class::<surface::RayHits>()?;
+    module.add_class::<surface::SurfaceSamples>()?;
+    module.add_class::<observer::PyMomentumObserver>()?;
+    module.add_class::<isolator::PyContactIsolator>()?;
+    module.add_class::<isolator::PyIsolation>()?;
+    module.add_class::<isolator::PyContact>()?;
+    module.add_class::<isolator::PyCandidate>()?;
+    module.add_class::<monitor::PyContactMonitor>()?;
+    module.add_class::<monitor::PyContactReport>()?;
+    Ok(())
 }

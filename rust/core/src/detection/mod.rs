@@ -1,0 +1,8 @@
+//! Detection: is there a contact, and behind which joints (Vorndamme 2017, eq. 21).
+
+mod detector;
+mod tips;
+
+pub(crate) use detector::check_threshold;
+pub use detector::Detector;
+pub use tips::TipSearch;

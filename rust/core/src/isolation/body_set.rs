@@ -1,0 +1,55 @@
+//! The bodies that can carry a contact, given what the joints behind the contact body do not feel
+//! (Vorndamme 2017, the correction after step 4).
+
+use super::wrench::{jacobian_column, WrenchEstimate};
+use crate::robot::{Kinematics, Robot};
+
+/// A set of bodies, grown from a contact body away from the base.
+#[derive(Debug, Clone)]
+pub(super) struct BodySet {
+    member: Vec<bool>,
+}
+
+impl BodySet {
+    pub fn new(robot: &Robot) -> Self {
+        Self {
+            member: vec![false; robot.body_count()],
+        }
+    }
+
+    /// `first`, and every body behind it whose joints would not feel `wrench` more than they do.
+    pub fn grow(
+        &mut self,
+        robot: &Robot,
+        kinematics: &Kinematics,
+        first: usize,
+        wrench: &WrenchEstimate,
+        torque: &[f64],
+        threshold: &[f64],
+    ) {
+        self.member.fill(false);
+        self.member[first] = true;
+        for body in first + 1..robot.body_count() {
+            self.member[body] = self.member[robot.parent_body(body)]
+                && robot.velocity_range(body).enumerate().all(|(column, k)| {
+                    let axis = jacobian_column(robot, kinematics, body, column, &wrench.reference);
+                    (wrench.torque_on(&axis) - torque[k]).abs() <= threshold[k]
+                });
+        }
+    }
+
+    /// `first` and every body behind it.
+    pub fn grow_all(&mut self, robot: &Robot, first: usize) {
+        self.member.fill(false);
+        self.member[first] = true;
+        for body in first + 1..robot.body_count() {
+            self.member[body] = self.member[robot.parent_body(body)];
+        }
+    }
+
+    /// The touchable links on these bodies, nearest to the base first.
+    pub fn links<'a>(&'a self, robot: &'a Robot) -> impl Iterator<Item = usize> + 'a {
+        let members = self.member.iter().enumerate().filter(|(_, member)| **member);
+        members.flat_map(|(body, _)| robot.links_of_body(body).iter().copied())
+    }
+}

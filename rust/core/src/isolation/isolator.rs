@@ -1,0 +1,306 @@
+//! From an external torque to a contact: link, point and force (Vorndamme 2017, eqs. 22-26 and 29-30).
+
+use std::sync::Arc;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::body_set::BodySet;
+use super::line::{best_first, LineCast};
+use super::result::{Candidate, Contact, Isolation};
+use super::wrench::{estimate_wrench, jacobian_column, WrenchEstimate};
+use crate::detection::TipSearch;
+use crate::error::{Error, Result};
+use crate::robot::motion::{split, stack};
+use crate::robot::{Kinematics, Robot};
+
+/// Rounds until the contact link stands still; ten, as in Vorndamme 2017.
+const ROUNDS: usize = 10;
+/// All hits of one instant that are kept.
+const CANDIDATES: usize = 512;
+/// A single force must explain the torque but for this share, or for a few thresholds.
+const UNEXPLAINED_SHARE: f64 = 0.05;
+const UNEXPLAINED_THRESHOLDS: f64 = 3.0;
+
+/// Settings of a [`ContactIsolator`].
+#[derive(Debug, Clone)]
+pub struct IsolatorOptions {
+    /// Per velocity variable, or one for all [Nm, N]. Also the scale of the torques' errors.
+    pub torque_threshold: Vec<f64>,
+    /// Contacts reported at most.
+    pub max_contacts: usize,
+    /// Whether forces push on the surface (they may pull otherwise, and the point stays open).
+    pub pushing: bool,
+}
+
+impl Default for IsolatorOptions {
+    fn default() -> Self {
+        Self {
+            torque_threshold: vec![1e-3],
+            max_contacts: 5,
+            pushing: true,
+        }
+    }
+}
+
+/// Finds the contact that explains an external torque.
+#[derive(Debug, Clone)]
+pub struct ContactIsolator {
+    robot: Arc<Robot>,
+    threshold: Vec<f64>,
+    max_contacts: usize,
+    pushing: bool,
+    kinematics: Kinematics,
+    tips: TipSearch,
+    bodies: BodySet,
+    line: LineCast,
+    unexplained: Vec<f64>,
+    isolation: Isolation,
+}
+
+impl ContactIsolator {
+    /// An isolator for a robot.
+    ///
+    /// # Errors
+    /// [`Error::Input`] names the option.
+    pub fn new(robot: Arc<Robot>, options: &IsolatorOptions) -> Result<Self> {
+        let threshold = crate::detection::check_threshold(&robot, &options.torque_threshold)?;
+        if options.max_contacts == 0 {
+            return Err(Error::Input("max_contacts: must be at least 1".into()));
+        }
+        let isolation = Isolation {
+            contacts: Vec::with_capacity(options.max_contacts),
+            candidates: Vec::with_capacity(CANDIDATES),
+            link_candidates: Vec::with_capacity(robot.links().len()),
+            ..Isolation::default()
+        };
+        Ok(Self {
+            threshold,
+            max_contacts: options.max_contacts,
+            pushing: options.pushing,
+            kinematics: Kinematics::new(&robot),
+            tips: TipSearch::new(&robot),
+            bodies: BodySet::new(&robot),
+            line: LineCast::new(),
+            unexplained: vec![0.0; robot.nv()],
+            isolation,
+            robot,
+        })
+    }
+
+    /// Contacts that explain the external torque `(nv,)` at the configuration `q`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] names the argument.
+    pub fn isolate(&mut self, q: &[f64], tau_ext: &[f64]) -> Result<&Isolation> {
+        self.robot.check_configuration(q)?;
+        self.robot.check_tangent("tau_ext", tau_ext)?;
+        let mut kinematics = std::mem::replace(&mut self.kinematics, Kinematics::empty());
+        kinematics.set_configuration(&self.robot, q);
+        self.isolate_at(&kinematics, tau_ext);
+        self.kinematics = kinematics;
+        Ok(&self.isolation)
+    }
+
+    /// The same with poses that are known already.
+    pub(crate) fn isolate_at(&mut self, kinematics: &Kinematics, tau_ext: &[f64]) -> &Isolation {
+        self.isolation.clear();
+        self.unexplained.copy_from_slice(tau_ext);
+        let threshold = &self.threshold;
+        let tips = self
+            .tips
+            .find(&self.robot, |k| tau_ext[k].abs() > threshold[k])
+            .len();
+        if tips == 1 {
+            self.isolate_single(kinematics, self.tips.tips()[0], tau_ext);
+        } else {
+            self.name_links(kinematics, tau_ext);
+        }
+        self.isolation.residual = self.unexplained.iter().map(|x| x * x).sum::<f64>().sqrt();
+        &self.isolation
+    }
+
+    /// The answer of the last call.
+    pub fn isolation(&self) -> &Isolation {
+        &self.isolation
+    }
+
+    /// Forgets the last answer.
+    pub fn clear(&mut self) {
+        self.isolation.clear();
+    }
+
+    /// A force on one branch: steps 1 to 4, repeated with the link that was hit.
+    fn isolate_single(&mut self, kinematics: &Kinematics, tip: usize, tau_ext: &[f64]) {
+        let mut body = tip;
+        for _ in 0..ROUNDS {
+            let wrench = estimate_wrench(&self.robot, kinematics, body, tau_ext, &self.threshold);
+            self.isolation.rank_deficit = 6 - wrench.rank;
+            if wrench.rank < 6 {
+                self.name_link(tip);
+                self.explain(kinematics, body, &wrench);
+                return;
+            }
+            self.bodies
+                .grow(&self.robot, kinematics, tip, &wrench, tau_ext, &self.threshold);
+            let hit = self.cast(kinematics, &wrench).or_else(|| {
+                self.bodies.grow_all(&self.robot, tip);
+                self.cast(kinematics, &wrench)
+            });
+            let Some(hit) = hit else {
+                self.name_link(tip);
+                self.report_wrench(kinematics, &wrench);
+                self.explain(kinematics, body, &wrench);
+                return;
+            };
+            let hit_body = self.robot.links[hit.link].body;
+            if hit_body == body {
+                self.report_point(kinematics, &wrench, &hit, tau_ext);
+                return;
+            }
+            body = hit_body;
+        }
+        // Two links that take turns: the link is open.
+        self.name_link(tip);
+    }
+
+    /// Casts the line of action on the links in question; the first hit where the force enters.
+    fn cast(&mut self, kinematics: &Kinematics, wrench: &WrenchEstimate) -> Option<Candidate> {
+        let Isolation {
+            candidates,
+            link_candidates,
+            ..
+        } = &mut self.isolation;
+        candidates.clear();
+        link_candidates.clear();
+        link_candidates.extend(self.bodies.links(&self.robot));
+        let (start, direction) = wrench.line_of_action()?;
+        for &link in link_candidates.iter() {
+            self.line
+                .cast(&self.robot, kinematics, link, &start, &direction, candidates);
+        }
+        best_first(candidates);
+        let best = candidates.first().copied().filter(|hit| hit.pushing)?;
+        if let Some(position) = link_candidates.iter().position(|link| *link == best.link) {
+            link_candidates[..=position].rotate_right(1);
+        }
+        Some(best)
+    }
+
+    /// The contact is at `hit`: identify the force there (Vorndamme 2017, eq. 30, without moment).
+    fn report_point(
+        &mut self,
+        kinematics: &Kinematics,
+        wrench: &WrenchEstimate,
+        hit: &Candidate,
+        tau_ext: &[f64],
+    ) {
+        let robot = &self.robot;
+        let link = &robot.links[hit.link];
+        let at = hit.point - kinematics.origin;
+        let (mut normal_matrix, mut rhs) = (Matrix3::zeros(), Vector3::zeros());
+        for &joint in robot.chain(link.body) {
+            for (column, k) in robot.velocity_range(joint).enumerate() {
+                let (row, _) = split(&jacobian_column(robot, kinematics, joint, column, &at));
+                let weight = 1.0 / (self.threshold[k] * self.threshold[k]);
+                normal_matrix += row * row.transpose() * weight;
+                rhs += row * (tau_ext[k] * weight);
+            }
+        }
+        // A full-rank wrench leaves the force regular; keep the wrench's force should rounding say otherwise.
+        let force = normal_matrix
+            .cholesky()
+            .map_or(wrench.force, |factor| factor.solve(&rhs));
+        let (mut squares, mut misfit) = (0.0, 0.0);
+        for &joint in robot.chain(link.body) {
+            for (column, k) in robot.velocity_range(joint).enumerate() {
+                let (row, _) = split(&jacobian_column(robot, kinematics, joint, column, &at));
+                self.unexplained[k] -= row.dot(&force);
+            }
+        }
+        for (k, threshold) in self.threshold.iter().enumerate() {
+            squares += (tau_ext[k] / threshold).powi(2);
+            misfit += (self.unexplained[k] / threshold).powi(2);
+        }
+        let allowed = (UNEXPLAINED_SHARE * squares.sqrt())
+            .max(UNEXPLAINED_THRESHOLDS * (self.threshold.len() as f64).sqrt());
+        let grazing = hit.normal.dot(&force).abs() / force.norm();
+        let point_std = wrench.point_std(&at) / grazing.max(f64::EPSILON);
+        let size = link
+            .surface
+            .as_ref()
+            .map_or(0.0, |surface| surface.bounding_sphere().1);
+
+        let pose = kinematics.link_pose(robot, hit.link);
+        let mut contact = Contact::unlocated(hit.link);
+        contact.point = hit.point;
+        contact.point_local = pose.inverse_transform_point(&hit.point);
+        contact.normal = hit.normal;
+        contact.force = force;
+        contact.wrench = stack(&force, &(hit.point - pose.translation).cross(&force));
+        contact.point_std = point_std;
+        contact.candidates = 0..self.isolation.candidates.len();
+        contact.located = self.pushing && point_std < size && misfit.sqrt() <= allowed;
+        self.isolation.contacts.push(contact);
+    }
+
+    /// The line of action meets no surface where the force could enter: the wrench is known, the point is not.
+    fn report_wrench(&mut self, kinematics: &Kinematics, wrench: &WrenchEstimate) {
+        let all = 0..self.isolation.candidates.len();
+        if let Some(contact) = self.isolation.contacts.last_mut() {
+            let origin = kinematics.link_pose(&self.robot, contact.link).translation - kinematics.origin;
+            contact.force = wrench.force;
+            let moment = wrench.moment + (wrench.reference - origin).cross(&wrench.force);
+            contact.wrench = stack(&wrench.force, &moment);
+            contact.candidates = all;
+        }
+    }
+
+    /// Forces on several branches: the links are named, the points stay open.
+    fn name_links(&mut self, kinematics: &Kinematics, tau_ext: &[f64]) {
+        for index in 0..self.tips.tips().len() {
+            let tip = self.tips.tips()[index];
+            let wrench = estimate_wrench(&self.robot, kinematics, tip, tau_ext, &self.threshold);
+            self.isolation.rank_deficit += 6 - wrench.rank;
+            self.name_link(tip);
+        }
+    }
+
+    /// A contact on the body `tip`, its point open.
+    fn name_link(&mut self, tip: usize) {
+        let links = self.robot.links_of_body(tip);
+        for &link in links {
+            if !self.isolation.link_candidates.contains(&link) {
+                self.isolation.link_candidates.push(link);
+            }
+        }
+        let named = links.first().copied().or_else(|| self.nearest_touchable(tip));
+        if let Some(link) = named {
+            if self.isolation.contacts.len() < self.max_contacts {
+                self.isolation.contacts.push(Contact::unlocated(link));
+            }
+        }
+    }
+
+    /// Of a body without surface: the first touchable link behind it, else before it.
+    fn nearest_touchable(&mut self, body: usize) -> Option<usize> {
+        self.bodies.grow_all(&self.robot, body);
+        let behind = self.bodies.links(&self.robot).next();
+        behind.or_else(|| {
+            let before = self.robot.chain(body).iter().rev();
+            before
+                .flat_map(|body| self.robot.links_of_body(*body))
+                .copied()
+                .next()
+        })
+    }
+
+    /// Takes what a wrench on `body` explains out of the unexplained torque.
+    fn explain(&mut self, kinematics: &Kinematics, body: usize, wrench: &WrenchEstimate) {
+        for &joint in self.robot.chain(body) {
+            for (column, k) in self.robot.velocity_range(joint).enumerate() {
+                let axis = jacobian_column(&self.robot, kinematics, joint, column, &wrench.reference);
+                self.unexplained[k] -= wrench.torque_on(&axis);
+            }
+        }
+    }
+}

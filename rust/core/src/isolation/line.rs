@@ -1,0 +1,75 @@
+//! Intersecting the line of action with the links' surfaces (Vorndamme 2017, step 4).
+
+use nalgebra::Vector3;
+
+use super::result::Candidate;
+use crate::robot::{Kinematics, Robot};
+use crate::surface::RayHit;
+
+/// Hits of one link that are kept; a line that meets a surface more often loses the rest.
+const HITS_PER_LINK: usize = 128;
+
+/// Workspace for casting a line.
+#[derive(Debug, Clone)]
+pub(super) struct LineCast {
+    hits: Vec<RayHit>,
+}
+
+impl LineCast {
+    pub fn new() -> Self {
+        Self {
+            hits: Vec::with_capacity(HITS_PER_LINK),
+        }
+    }
+
+    /// Appends all hits of the whole line with a link, up to the capacity of `candidates`.
+    pub fn cast(
+        &mut self,
+        robot: &Robot,
+        kinematics: &Kinematics,
+        link_index: usize,
+        start: &Vector3<f64>,
+        direction: &Vector3<f64>,
+        candidates: &mut Vec<Candidate>,
+    ) {
+        let link = &robot.links[link_index];
+        let Some(surface) = &link.surface else { return };
+        let body = &kinematics.bodies[link.body];
+        let rotation = body.rotation * link.placement.rotation;
+        let translation = body.position + body.rotation * link.placement.translation;
+        let origin = rotation.tr_mul(&(start - translation));
+        let along = rotation.tr_mul(direction);
+
+        let (centre, radius) = surface.bounding_sphere();
+        if (centre - origin).cross(&along).norm_squared() > radius * radius * (1.0 + 1e-9) {
+            return;
+        }
+        // From before the surface, so that distances stay of its size.
+        let before = (centre - origin).dot(&along) - 1.1 * radius;
+        let from = origin + along * before;
+        self.hits.clear();
+        surface.cast_line_into(&from, &along, f64::NEG_INFINITY, &mut self.hits);
+        for hit in &self.hits {
+            if candidates.len() == candidates.capacity() {
+                return;
+            }
+            candidates.push(Candidate {
+                link: link_index,
+                point: rotation * hit.point + translation + kinematics.origin,
+                normal: rotation * hit.normal,
+                pushing: hit.normal.dot(&along) < 0.0,
+                distance: before + hit.distance,
+            });
+        }
+    }
+}
+
+/// Orders hits: those where the force enters first, each kind along the force.
+pub(super) fn best_first(candidates: &mut [Candidate]) {
+    candidates.sort_unstable_by(|a, b| {
+        b.pushing
+            .cmp(&a.pushing)
+            .then(a.distance.total_cmp(&b.distance))
+            .then(a.link.cmp(&b.link))
+    });
+}

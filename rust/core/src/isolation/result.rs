@@ -1,0 +1,86 @@
+//! What isolation answers.
+
+use std::ops::Range;
+
+use nalgebra::{Vector3, Vector6};
+
+/// A place where the line of action meets a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Candidate {
+    /// Index into [`crate::robot::Robot::links`].
+    pub link: usize,
+    /// World frame [m].
+    pub point: Vector3<f64>,
+    /// Outward normal, world frame.
+    pub normal: Vector3<f64>,
+    /// Whether the force enters the surface here.
+    pub pushing: bool,
+    /// Along the force, from the point of the line nearest to the contact body's origin [m].
+    pub distance: f64,
+}
+
+/// One contact. Vectors that the data do not determine are NaN.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Contact {
+    /// Index into [`crate::robot::Robot::links`].
+    pub link: usize,
+    /// Point of contact, world frame [m].
+    pub point: Vector3<f64>,
+    /// The same in the link frame [m].
+    pub point_local: Vector3<f64>,
+    /// Force on the robot, world frame [N].
+    pub force: Vector3<f64>,
+    /// Outward surface normal at the point, world frame.
+    pub normal: Vector3<f64>,
+    /// Wrench (force, moment) on the robot at the link's origin, world axes [N, Nm].
+    pub wrench: Vector6<f64>,
+    /// False: the link is known, the point is not.
+    pub located: bool,
+    /// How far the point moves on the surface if every torque errs at random by its threshold (one standard
+    /// deviation) [m].
+    pub point_std: f64,
+    /// This contact's part of [`Isolation::candidates`], best first.
+    pub candidates: Range<usize>,
+}
+
+impl Contact {
+    pub(super) fn unlocated(link: usize) -> Self {
+        let unknown = Vector3::repeat(f64::NAN);
+        Self {
+            link,
+            point: unknown,
+            point_local: unknown,
+            force: unknown,
+            normal: unknown,
+            wrench: Vector6::repeat(f64::NAN),
+            located: false,
+            point_std: f64::NAN,
+            candidates: 0..0,
+        }
+    }
+}
+
+/// All contacts of one instant.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Isolation {
+    /// One contact a branch that feels one, farthest from the base first.
+    pub contacts: Vec<Contact>,
+    /// Surface hits of all contacts.
+    pub candidates: Vec<Candidate>,
+    /// How many components of the wrenches the torques leave open (Vorndamme 2017, eq. 31).
+    pub rank_deficit: usize,
+    /// Norm of the external torque that the contacts do not explain.
+    pub residual: f64,
+    /// Links that may carry a contact, likeliest first.
+    pub link_candidates: Vec<usize>,
+}
+
+impl Isolation {
+    pub(super) fn clear(&mut self) {
+        self.contacts.clear();
+        self.candidates.clear();
+        self.link_candidates.clear();
+        self.rank_deficit = 0;
+        self.residual = 0.0;
+    }
+}

@@ -1,0 +1,154 @@
+//! The wrench on one body by the weighted pseudoinverse of its Jacobian (Vorndamme 2017, eq. 23).
+
+use nalgebra::{Matrix3, Matrix3x6, Matrix6, SMatrix, Vector3, Vector6};
+
+use crate::robot::motion::{motion_axis, split, stack};
+use crate::robot::{Kinematics, Robot};
+
+/// Balances moments against forces in the rank decision: a typical lever arm [m].
+const LEVER: f64 = 0.3;
+/// Singular values below this share of the largest count as zero.
+const RANK_TOLERANCE: f64 = 1e-7;
+/// An SVD of a finite 6 x 6 matrix converges within a few sweeps; this bounds the time.
+const SVD_ITERATIONS: usize = 200;
+/// Rows that one factorisation takes in: six of the triangle so far and six new ones.
+const BLOCK: usize = 12;
+
+/// What the torques of a chain say of a wrench on its last body.
+#[derive(Debug, Clone)]
+pub(super) struct WrenchEstimate {
+    pub force: Vector3<f64>,
+    /// About `reference`.
+    pub moment: Vector3<f64>,
+    /// Where the moment refers to, from the kinematics' origin.
+    pub reference: Vector3<f64>,
+    pub rank: usize,
+    /// `root * root^T` is the covariance of the wrench if each torque's standard deviation is its threshold.
+    root: Matrix6<f64>,
+}
+
+/// Velocity at `reference` and rotation that one unit of a joint's velocity gives the bodies behind it.
+#[inline]
+pub(super) fn jacobian_column(
+    robot: &Robot,
+    kinematics: &Kinematics,
+    body: usize,
+    column: usize,
+    reference: &Vector3<f64>,
+) -> Vector6<f64> {
+    let (linear, angular) = split(&motion_axis(
+        robot.bodies[body].kind,
+        &kinematics.bodies[body],
+        column,
+    ));
+    stack(&(linear + angular.cross(reference)), &angular)
+}
+
+/// Least squares over the chain of `body`, each torque weighted by its threshold.
+pub(super) fn estimate_wrench(
+    robot: &Robot,
+    kinematics: &Kinematics,
+    body: usize,
+    torque: &[f64],
+    threshold: &[f64],
+) -> WrenchEstimate {
+    let reference = kinematics.bodies[body].position;
+    let mut rows = SMatrix::<f64, BLOCK, 7>::zeros();
+    let mut filled = 0;
+    for &joint in robot.chain(body) {
+        for (column, k) in robot.velocity_range(joint).enumerate() {
+            if filled == BLOCK {
+                rows = triangle(rows);
+                filled = 6;
+            }
+            let weight = 1.0 / threshold[k];
+            let axis = jacobian_column(robot, kinematics, joint, column, &reference) * weight;
+            for i in 0..3 {
+                rows[(filled, i)] = axis[i];
+                rows[(filled, 3 + i)] = axis[3 + i] / LEVER;
+            }
+            rows[(filled, 6)] = torque[k] * weight;
+            filled += 1;
+        }
+    }
+    let rows = triangle(rows);
+    let factor: Matrix6<f64> = rows.fixed_view::<6, 6>(0, 0).into_owned();
+    let rhs: Vector6<f64> = rows.fixed_view::<6, 1>(0, 6).into_owned();
+    let (solution, mut root, rank) = match full_rank_inverse(&factor) {
+        Some(inverse) => (inverse * rhs, inverse, 6),
+        None => minimum_norm(&factor, &rhs),
+    };
+    for i in 3..6 {
+        root.row_mut(i).unscale_mut(LEVER);
+    }
+    let (force, moment) = split(&solution);
+    WrenchEstimate {
+        force,
+        moment: moment / LEVER,
+        reference,
+        rank,
+        root,
+    }
+}
+
+/// The triangle of a QR factorisation in the upper rows, zeros below.
+fn triangle(rows: SMatrix<f64, BLOCK, 7>) -> SMatrix<f64, BLOCK, 7> {
+    let upper = rows.qr().r();
+    let mut out = SMatrix::<f64, BLOCK, 7>::zeros();
+    out.fixed_view_mut::<6, 7>(0, 0)
+        .copy_from(&upper.fixed_view::<6, 7>(0, 0));
+    out
+}
+
+/// The inverse of a triangle that is safely regular: its norm bounds the smallest singular value from below.
+fn full_rank_inverse(factor: &Matrix6<f64>) -> Option<Matrix6<f64>> {
+    let inverse = factor.solve_upper_triangular(&Matrix6::identity())?;
+    let condition = factor.norm() * inverse.norm();
+    (condition.is_finite() && condition < 1.0 / RANK_TOLERANCE).then_some(inverse)
+}
+
+/// Minimum-norm solution, its covariance root and the rank.
+fn minimum_norm(factor: &Matrix6<f64>, rhs: &Vector6<f64>) -> (Vector6<f64>, Matrix6<f64>, usize) {
+    let Some(svd) = factor.try_svd(true, true, f64::EPSILON, SVD_ITERATIONS) else {
+        return (Vector6::zeros(), Matrix6::zeros(), 0);
+    };
+    let tolerance = RANK_TOLERANCE * svd.singular_values.max();
+    let rank = svd
+        .singular_values
+        .iter()
+        .filter(|value| **value > tolerance)
+        .count();
+    match svd.pseudo_inverse(tolerance) {
+        Ok(inverse) => (inverse * rhs, inverse, rank),
+        Err(_) => (Vector6::zeros(), Matrix6::zeros(), rank),
+    }
+}
+
+impl WrenchEstimate {
+    /// The point of the line of action nearest to `reference` (Vorndamme 2017, eq. 26), and its direction.
+    pub fn line_of_action(&self) -> Option<(Vector3<f64>, Vector3<f64>)> {
+        let size = self.force.norm();
+        if size.is_nan() || size < f64::MIN_POSITIVE.sqrt() {
+            return None;
+        }
+        let start = self.reference + self.force.cross(&self.moment) / (size * size);
+        Some((start, self.force / size))
+    }
+
+    /// Torque of one joint column that this wrench causes.
+    pub fn torque_on(&self, column: &Vector6<f64>) -> f64 {
+        let (linear, angular) = split(column);
+        linear.dot(&self.force) + angular.dot(&self.moment)
+    }
+
+    /// Standard deviation of a point of the line across the line, if each torque's is its threshold [m].
+    pub fn point_std(&self, point: &Vector3<f64>) -> f64 {
+        let lever = (point - self.reference).cross_matrix();
+        let across = self.force.cross_matrix() / self.force.norm_squared();
+        let mut map = Matrix3x6::zeros();
+        map.fixed_view_mut::<3, 3>(0, 0).copy_from(&(-(across * lever)));
+        map.fixed_view_mut::<3, 3>(0, 3)
+            .copy_from(&(across * Matrix3::identity()));
+        (map * self.root).norm()
+    }
+}

@@ -1,0 +1,7 @@
+//! The pipeline: one call a control tick.
+
+mod bias;
+mod contact_monitor;
+
+pub use bias::BiasTracker;
+pub use contact_monitor::{ContactMonitor, ContactReport, MonitorOptions};

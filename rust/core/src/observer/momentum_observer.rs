@@ -1,0 +1,215 @@
+//! The generalised momentum observer (Vorndamme 2017, eqs. 4-6) and its acceleration (eqs. 8-9).
+
+use std::sync::Arc;
+
+use crate::error::{Error, Result};
+use crate::robot::configuration::{check_vector, spread_torque};
+use crate::robot::{ForwardDynamics, Kinematics, MomentumPass, Robot};
+
+/// Estimates the external torque from `q`, `v` and the motors' torque, without acceleration.
+///
+/// Each component is the true external torque behind a first-order low-pass with time constant `1 / gain`. The step
+/// is exact for a constant external torque, second-order in `dt` and stable for any `gain * dt`.
+#[derive(Debug, Clone)]
+pub struct MomentumObserver {
+    robot: Arc<Robot>,
+    dt: f64,
+    gain: Vec<f64>,
+    /// `exp(-gain dt)` for the `dt` of the constructor.
+    decay: Vec<f64>,
+    kinematics: Kinematics,
+    pass: MomentumPass,
+    forward: ForwardDynamics,
+    momentum: Vec<f64>,
+    momentum_before: Vec<f64>,
+    /// `tau_m - tau_f + C^T v - g` now and at the step before.
+    known_rate: Vec<f64>,
+    known_rate_before: Vec<f64>,
+    external_torque: Vec<f64>,
+    /// `tau_m - tau_f`.
+    motor_torque: Vec<f64>,
+    velocity: Vec<f64>,
+    total_torque: Vec<f64>,
+    acceleration: Vec<f64>,
+    acceleration_is_current: bool,
+    started: bool,
+}
+
+impl MomentumObserver {
+    /// An observer that is called every `dt` [s], with a `gain` [1/s] per velocity variable (or one for all).
+    ///
+    /// # Errors
+    /// [`Error::Input`] where `dt` or a gain is not positive and finite, or their number is wrong.
+    pub fn new(robot: Arc<Robot>, dt: f64, gain: &[f64]) -> Result<Self> {
+        check_time_step(dt)?;
+        let nv = robot.nv();
+        let gain = match gain {
+            [gain] => vec![*gain; nv],
+            _ => gain.to_vec(),
+        };
+        check_vector("gain", &gain, nv)?;
+        if gain.iter().any(|gain| *gain <= 0.0) {
+            return Err(Error::Input("gain: must be positive [1/s]".into()));
+        }
+        let zeros = vec![0.0; nv];
+        Ok(Self {
+            dt,
+            decay: gain.iter().map(|gain| (-gain * dt).exp()).collect(),
+            gain,
+            kinematics: Kinematics::new(&robot),
+            pass: MomentumPass::new(&robot),
+            forward: ForwardDynamics::new(&robot),
+            momentum: zeros.clone(),
+            momentum_before: zeros.clone(),
+            known_rate: zeros.clone(),
+            known_rate_before: zeros.clone(),
+            external_torque: zeros.clone(),
+            motor_torque: zeros.clone(),
+            velocity: zeros.clone(),
+            total_torque: zeros.clone(),
+            acceleration: zeros,
+            acceleration_is_current: true,
+            started: false,
+            robot,
+        })
+    }
+
+    /// One control tick; returns the external torque `(nv,)`.
+    ///
+    /// `tau` is `(nv,)`, or `(nv - 6,)` for a floating base; `friction` (same shape) is subtracted from it; `dt`
+    /// replaces the constructor's for this step. The first call sets the initial momentum and returns zeros.
+    ///
+    /// # Errors
+    /// [`Error::Input`] names the argument; the state is then unchanged.
+    pub fn update(
+        &mut self,
+        q: &[f64],
+        v: &[f64],
+        tau: &[f64],
+        friction: Option<&[f64]>,
+        dt: Option<f64>,
+    ) -> Result<&[f64]> {
+        self.robot.check_configuration(q)?;
+        self.robot.check_tangent("v", v)?;
+        self.robot.check_torque("tau", tau)?;
+        if let Some(friction) = friction {
+            self.robot.check_torque("friction", friction)?;
+        }
+        if let Some(dt) = dt {
+            check_time_step(dt)?;
+        }
+        self.advance(q, v, tau, friction, dt);
+        Ok(&self.external_torque)
+    }
+
+    /// [`MomentumObserver::update`] on arguments that were checked.
+    pub(crate) fn advance(
+        &mut self,
+        q: &[f64],
+        v: &[f64],
+        tau: &[f64],
+        friction: Option<&[f64]>,
+        dt: Option<f64>,
+    ) {
+        std::mem::swap(&mut self.momentum, &mut self.momentum_before);
+        std::mem::swap(&mut self.known_rate, &mut self.known_rate_before);
+        self.kinematics.set_configuration(&self.robot, q);
+        self.kinematics.set_velocity(&self.robot, v);
+        self.pass.evaluate(
+            &self.robot,
+            &self.kinematics,
+            v,
+            &mut self.momentum,
+            &mut self.known_rate,
+        );
+        self.velocity.copy_from_slice(v);
+        spread_torque(tau, &mut self.motor_torque);
+        if let Some(friction) = friction {
+            let missing = self.motor_torque.len() - friction.len();
+            self.motor_torque[missing..]
+                .iter_mut()
+                .zip(friction)
+                .for_each(|(tau, f)| *tau -= f);
+        }
+        self.known_rate
+            .iter_mut()
+            .zip(&self.motor_torque)
+            .for_each(|(rate, tau)| *rate += tau);
+        if self.started {
+            self.integrate(dt);
+        }
+        self.started = true;
+        self.acceleration_is_current = false;
+    }
+
+    /// `r' = gain (dp/dt - known rate - r)`, exactly over a step on which `dp/dt - known rate` is constant.
+    fn integrate(&mut self, dt: Option<f64>) {
+        let inverse = 1.0 / dt.unwrap_or(self.dt);
+        for j in 0..self.external_torque.len() {
+            let rate = (self.momentum[j] - self.momentum_before[j]) * inverse;
+            let unexplained = rate - 0.5 * (self.known_rate[j] + self.known_rate_before[j]);
+            let decay = match dt {
+                None => self.decay[j],
+                Some(dt) => (-self.gain[j] * dt).exp(),
+            };
+            self.external_torque[j] = unexplained + decay * (self.external_torque[j] - unexplained);
+        }
+    }
+
+    /// Forgets all steps; the next call is a first call.
+    pub fn reset(&mut self) {
+        self.started = false;
+        self.external_torque.fill(0.0);
+        self.acceleration.fill(0.0);
+        self.acceleration_is_current = true;
+    }
+
+    /// The estimated external torque `(nv,)` of the last step.
+    pub fn external_torque(&self) -> &[f64] {
+        &self.external_torque
+    }
+
+    /// The estimated acceleration `(nv,)` at the last step: forward dynamics with the external torque
+    /// (Vorndamme 2017, eq. 9). Zeros before the first step.
+    pub fn acceleration(&mut self) -> &[f64] {
+        if !self.acceleration_is_current {
+            let torques = self.motor_torque.iter().zip(&self.external_torque);
+            self.total_torque
+                .iter_mut()
+                .zip(torques)
+                .for_each(|(sum, (motor, ext))| *sum = motor + ext);
+            let Self {
+                robot,
+                forward,
+                kinematics,
+                velocity,
+                total_torque,
+                acceleration,
+                ..
+            } = self;
+            forward.evaluate(robot, kinematics, velocity, total_torque, acceleration);
+            self.acceleration_is_current = true;
+        }
+        &self.acceleration
+    }
+
+    /// Poses and velocities of the last step.
+    pub fn kinematics(&self) -> &Kinematics {
+        &self.kinematics
+    }
+
+    /// The robot observed.
+    pub fn robot(&self) -> &Arc<Robot> {
+        &self.robot
+    }
+}
+
+pub(crate) fn check_time_step(dt: f64) -> Result<()> {
+    if dt.is_finite() && dt > 0.0 {
+        Ok(())
+    } else {
+        Err(Error::Input(format!(
+            "dt: must be positive and finite [s], not {dt}"
+        )))
+    }
+}

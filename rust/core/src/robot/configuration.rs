@@ -1,0 +1,118 @@
+//! Configurations, velocities and torques: what a call's arrays must look like.
+
+use super::description::JointKind;
+use super::tree::Robot;
+use crate::error::{Error, Result};
+
+/// Unit quaternions and (cos, sin) pairs may be off by this much (squared norm); they are normalised.
+const NORM_TOLERANCE: f64 = 1e-3;
+
+/// Checks that `values` has `length` finite entries.
+#[inline]
+pub(crate) fn check_vector(argument: &str, values: &[f64], length: usize) -> Result<()> {
+    if values.len() != length {
+        return Err(wrong_length(argument, values.len(), length));
+    }
+    // A sum is finite unless an entry is not (or overflows, which is no sensible input either).
+    let sum: f64 = values.iter().map(|x| x * 0.0).sum();
+    if sum == 0.0 {
+        Ok(())
+    } else {
+        Err(not_finite(argument, values))
+    }
+}
+
+#[cold]
+fn wrong_length(argument: &str, found: usize, wanted: usize) -> Error {
+    Error::Input(format!("{argument}: expected {wanted} numbers, got {found}"))
+}
+
+#[cold]
+fn not_finite(argument: &str, values: &[f64]) -> Error {
+    let index = values.iter().position(|x| !x.is_finite()).unwrap_or(0);
+    Error::Input(format!(
+        "{argument}: entry {index} is {}; all entries must be finite",
+        values[index]
+    ))
+}
+
+impl Robot {
+    /// The neutral configuration: joints at zero, base at the origin.
+    pub fn neutral(&self) -> Vec<f64> {
+        let mut q = vec![0.0; self.nq()];
+        for body in &self.bodies[1..] {
+            match body.kind {
+                JointKind::FreeFlyer => q[body.idx_q + 6] = 1.0,
+                JointKind::Continuous => q[body.idx_q] = 1.0,
+                _ => {}
+            }
+        }
+        q
+    }
+
+    /// Checks a configuration: length, finite, unit quaternion and (cos, sin) pairs.
+    ///
+    /// # Errors
+    /// [`Error::Input`] names the entry.
+    pub fn check_configuration(&self, q: &[f64]) -> Result<()> {
+        check_vector("q", q, self.nq())?;
+        for body in &self.bodies[1..] {
+            let part = match body.kind {
+                JointKind::FreeFlyer => &q[body.idx_q + 3..body.idx_q + 7],
+                JointKind::Continuous => &q[body.idx_q..body.idx_q + 2],
+                _ => continue,
+            };
+            let norm: f64 = part.iter().map(|x| x * x).sum();
+            if (norm - 1.0).abs() > NORM_TOLERANCE {
+                return Err(not_unit(body.kind, body.idx_q, norm.sqrt()));
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks a velocity or another vector of length `nv`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] names the argument.
+    #[inline]
+    pub fn check_tangent(&self, argument: &str, values: &[f64]) -> Result<()> {
+        check_vector(argument, values, self.nv())
+    }
+
+    /// Checks measured torques: `nv`, or `nv - 6` for a floating base (its six are then zero).
+    ///
+    /// # Errors
+    /// [`Error::Input`] names the argument.
+    #[inline]
+    pub fn check_torque(&self, argument: &str, tau: &[f64]) -> Result<()> {
+        if self.floating_base() && tau.len() == self.nv() {
+            check_vector(argument, tau, self.nv())
+        } else {
+            check_vector(argument, tau, self.nv() - self.unactuated())
+        }
+    }
+}
+
+#[cold]
+fn not_unit(kind: JointKind, index: usize, norm: f64) -> Error {
+    let text = match kind {
+        JointKind::FreeFlyer => format!(
+            "entries {}..{} are a quaternion (x, y, z, w)",
+            index + 3,
+            index + 7
+        ),
+        _ => format!(
+            "entries {index}..{} are (cos, sin) of a continuous joint",
+            index + 2
+        ),
+    };
+    Error::Input(format!("q: {text} and must have norm 1, not {norm:.6}"))
+}
+
+/// Writes `tau` as `nv` numbers, with zeros for an unactuated base.
+#[inline]
+pub(crate) fn spread_torque(tau: &[f64], out: &mut [f64]) {
+    let missing = out.len() - tau.len();
+    out[..missing].fill(0.0);
+    out[missing..].copy_from_slice(tau);
+}

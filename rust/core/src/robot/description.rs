@@ -1,0 +1,89 @@
+//! A robot as plain data: what the loaders produce and `Robot::new` checks.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::spatial::Pose;
+use crate::surface::Part;
+
+/// How a joint moves. `q` and `v` follow Pinocchio's order and meaning.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum JointKind {
+    /// A floating base: `q` = position, quaternion (x, y, z, w); `v` = linear, angular, both in the base frame.
+    FreeFlyer,
+    /// `q` is the angle [rad].
+    Revolute,
+    /// `q` is (cos, sin) of the angle; `v` the angular velocity [rad/s].
+    Continuous,
+    /// `q` is the displacement [m].
+    Prismatic,
+}
+
+impl JointKind {
+    /// Number of configuration variables.
+    pub fn nq(self) -> usize {
+        match self {
+            JointKind::FreeFlyer => 7,
+            JointKind::Continuous => 2,
+            JointKind::Revolute | JointKind::Prismatic => 1,
+        }
+    }
+
+    /// Number of velocity variables.
+    pub fn nv(self) -> usize {
+        match self {
+            JointKind::FreeFlyer => 6,
+            _ => 1,
+        }
+    }
+}
+
+/// A joint and the rigid body it moves (all links fixed to it lumped).
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointDescription {
+    /// Unique name.
+    pub name: String,
+    /// 0 for the world, k for the k-th joint (1-based); smaller than this joint's own number.
+    pub parent: usize,
+    /// How it moves.
+    pub kind: JointKind,
+    /// Axis in the joint frame (unused by a free flyer).
+    pub axis: Vector3<f64>,
+    /// Joint frame in the parent joint's frame at zero.
+    pub placement: Pose,
+    /// Mass of the body [kg].
+    pub mass: f64,
+    /// Centre of mass in the joint frame [m].
+    pub com: Vector3<f64>,
+    /// Inertia about the centre of mass, in joint axes [kg m^2].
+    pub inertia: Matrix3<f64>,
+    /// Rotor inertia added to the diagonal of the mass matrix [kg m^2 or kg].
+    pub armature: f64,
+}
+
+/// A URDF link: a named frame on a body, with the parts of its surface.
+#[derive(Debug, Clone)]
+pub struct LinkDescription {
+    /// Unique name.
+    pub name: String,
+    /// 0 for the world, k for the k-th joint's body.
+    pub joint: usize,
+    /// Link frame in the joint's frame.
+    pub placement: Pose,
+    /// Shapes in the link frame; none where the link cannot be touched.
+    pub geometry: Vec<Part>,
+}
+
+/// Everything `Robot::new` needs.
+#[derive(Debug, Clone)]
+pub struct RobotDescription {
+    /// The robot's name.
+    pub name: String,
+    /// Joints, parents before children.
+    pub joints: Vec<JointDescription>,
+    /// Links, in any order.
+    pub links: Vec<LinkDescription>,
+    /// Gravity in the world frame [m/s^2].
+    pub gravity: Vector3<f64>,
+    /// What a loader found odd and what it did about it.
+    pub warnings: Vec<String>,
+}

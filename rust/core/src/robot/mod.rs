@@ -1,0 +1,19 @@
+//! The robot: description, tree, kinematics and dynamics.
+
+pub(crate) mod configuration;
+mod description;
+mod forward_dynamics;
+mod inertia;
+mod inverse_dynamics;
+mod jacobian;
+mod kinematics;
+mod mass_matrix;
+mod momentum;
+pub(crate) mod motion;
+mod tree;
+
+pub use description::{JointDescription, JointKind, LinkDescription, RobotDescription};
+pub use forward_dynamics::ForwardDynamics;
+pub use kinematics::{BodyState, Kinematics};
+pub use momentum::MomentumPass;
+pub use tree::{Link, Robot, WORLD};

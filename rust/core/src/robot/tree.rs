@@ -1,0 +1,330 @@
+//! The robot: a frozen tree of bodies, links and surfaces.
+
+use std::collections::HashMap;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::description::{JointDescription, JointKind, RobotDescription};
+use crate::error::{Error, Result};
+use crate::spatial::Pose;
+use crate::surface::Surface;
+
+/// The world's index among the bodies; body k is moved by the k-th joint.
+pub const WORLD: usize = 0;
+
+/// A body and the joint that moves it. Frames are turned so that the joint axis is z.
+#[derive(Debug, Clone)]
+pub(crate) struct Body {
+    pub kind: JointKind,
+    pub parent: usize,
+    pub placement: Pose,
+    pub idx_q: usize,
+    pub idx_v: usize,
+    pub mass: f64,
+    pub com: Vector3<f64>,
+    pub inertia: Matrix3<f64>,
+    pub armature: f64,
+}
+
+/// A link: a frame on a body, perhaps with a surface.
+#[derive(Debug)]
+pub struct Link {
+    /// URDF name.
+    pub name: String,
+    /// The body it is fixed to.
+    pub body: usize,
+    /// Link frame in the body's frame.
+    pub(crate) placement: Pose,
+    /// Its surface, in the link frame.
+    pub surface: Option<Surface>,
+}
+
+/// A robot: immutable, shareable between threads.
+#[derive(Debug)]
+pub struct Robot {
+    name: String,
+    pub(crate) gravity: Vector3<f64>,
+    pub(crate) bodies: Vec<Body>,
+    joint_names: Vec<String>,
+    pub(crate) links: Vec<Link>,
+    link_index: HashMap<String, usize>,
+    touchable: Vec<usize>,
+    body_links: Vec<Vec<usize>>,
+    chains: Vec<Vec<usize>>,
+    nq: usize,
+    nv: usize,
+    warnings: Vec<String>,
+}
+
+/// A description that was checked: finite numbers, parents before children.
+fn check_joint(joint: &JointDescription, number: usize) -> Result<()> {
+    let name = &joint.name;
+    if joint.parent >= number {
+        return Err(Error::Model(format!(
+            "joint '{name}': its parent must come before it"
+        )));
+    }
+    let finite = joint
+        .placement
+        .rotation
+        .iter()
+        .chain(joint.placement.translation.iter());
+    let finite = finite
+        .chain(joint.com.iter())
+        .chain(joint.inertia.iter())
+        .chain(joint.axis.iter());
+    if !finite
+        .chain([&joint.mass, &joint.armature])
+        .all(|x| x.is_finite())
+    {
+        return Err(Error::Model(format!(
+            "joint '{name}': placement, axis and inertia must be finite"
+        )));
+    }
+    if joint.mass < 0.0 || joint.armature < 0.0 {
+        return Err(Error::Model(format!(
+            "joint '{name}': mass and armature must not be negative"
+        )));
+    }
+    if joint.kind == JointKind::FreeFlyer && number != 1 {
+        return Err(Error::Model(format!(
+            "joint '{name}': a free flyer is supported as the base only; other joints must be revolute, \
+             continuous or prismatic"
+        )));
+    }
+    if joint.kind != JointKind::FreeFlyer && joint.axis.norm() < 1e-9 {
+        return Err(Error::Model(format!("joint '{name}': the axis must not be zero")));
+    }
+    Ok(())
+}
+
+/// A rotation that takes z to the joint's axis.
+fn axis_frame(joint: &JointDescription) -> Matrix3<f64> {
+    if joint.kind == JointKind::FreeFlyer {
+        return Matrix3::identity();
+    }
+    let z = joint.axis.normalize();
+    let apart = if z.x.abs() < 0.8 {
+        Vector3::x()
+    } else {
+        Vector3::y()
+    };
+    let y = z.cross(&apart).normalize();
+    Matrix3::from_columns(&[y.cross(&z), y, z])
+}
+
+impl Robot {
+    /// Checks a description and freezes it.
+    ///
+    /// # Errors
+    /// [`Error::Model`] for joints and links that cannot be used, [`Error::Geometry`] for surfaces.
+    pub fn new(description: RobotDescription) -> Result<Robot> {
+        let RobotDescription {
+            name,
+            joints,
+            links,
+            gravity,
+            mut warnings,
+        } = description;
+        if !gravity.iter().all(|x| x.is_finite()) {
+            return Err(Error::Model("gravity must be three finite numbers".into()));
+        }
+        let mut frames = vec![Matrix3::identity()];
+        let mut bodies = vec![Body::world()];
+        let mut chains: Vec<Vec<usize>> = vec![vec![]];
+        let (mut nq, mut nv) = (0, 0);
+        for (index, joint) in joints.iter().enumerate() {
+            check_joint(joint, index + 1)?;
+            let frame = axis_frame(joint);
+            let parent_frame = frames[joint.parent];
+            bodies.push(Body {
+                kind: joint.kind,
+                parent: joint.parent,
+                placement: Pose {
+                    rotation: parent_frame.transpose() * joint.placement.rotation * frame,
+                    translation: parent_frame.transpose() * joint.placement.translation,
+                },
+                idx_q: nq,
+                idx_v: nv,
+                mass: joint.mass,
+                com: frame.transpose() * joint.com,
+                inertia: frame.transpose() * joint.inertia * frame,
+                armature: joint.armature,
+            });
+            let mut chain = chains[joint.parent].clone();
+            chain.push(index + 1);
+            chains.push(chain);
+            frames.push(frame);
+            nq += joint.kind.nq();
+            nv += joint.kind.nv();
+        }
+        let joint_names: Vec<String> = joints.into_iter().map(|joint| joint.name).collect();
+        let mut link_index = HashMap::new();
+        let mut body_links = vec![vec![]; bodies.len()];
+        let mut touchable = vec![];
+        let mut frozen = Vec::with_capacity(links.len());
+        for (index, link) in links.into_iter().enumerate() {
+            if link.joint >= bodies.len() {
+                return Err(Error::Model(format!(
+                    "link '{}': its joint does not exist",
+                    link.name
+                )));
+            }
+            if link_index.insert(link.name.clone(), index).is_some() {
+                return Err(Error::Model(format!("two links are named '{}'", link.name)));
+            }
+            let frame = frames[link.joint].transpose();
+            let placement = Pose {
+                rotation: frame * link.placement.rotation,
+                translation: frame * link.placement.translation,
+            };
+            let surface = if link.geometry.is_empty() {
+                None
+            } else {
+                let (surface, odd) =
+                    Surface::new(link.geometry).map_err(|error| in_link(&link.name, error))?;
+                warnings.extend(
+                    odd.into_iter()
+                        .map(|text| format!("link '{}': {text}", link.name)),
+                );
+                touchable.push(index);
+                body_links[link.joint].push(index);
+                Some(surface)
+            };
+            frozen.push(Link {
+                name: link.name,
+                body: link.joint,
+                placement,
+                surface,
+            });
+        }
+        Ok(Robot {
+            name,
+            gravity,
+            bodies,
+            joint_names,
+            links: frozen,
+            link_index,
+            touchable,
+            body_links,
+            chains,
+            nq,
+            nv,
+            warnings,
+        })
+    }
+
+    /// The robot's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Number of configuration variables.
+    pub fn nq(&self) -> usize {
+        self.nq
+    }
+
+    /// Number of velocity variables.
+    pub fn nv(&self) -> usize {
+        self.nv
+    }
+
+    /// Number of velocity variables without actuator: 6 for a floating base, else 0.
+    pub fn unactuated(&self) -> usize {
+        if self.floating_base() {
+            6
+        } else {
+            0
+        }
+    }
+
+    /// Whether the base is free to move.
+    pub fn floating_base(&self) -> bool {
+        self.bodies
+            .get(1)
+            .is_some_and(|body| body.kind == JointKind::FreeFlyer)
+    }
+
+    /// Joint names; joint k (from 0) moves body k + 1.
+    pub fn joint_names(&self) -> &[String] {
+        &self.joint_names
+    }
+
+    /// All links, also those without surface.
+    pub fn links(&self) -> &[Link] {
+        &self.links
+    }
+
+    /// Indices of the links that have a surface.
+    pub fn touchable_links(&self) -> &[usize] {
+        &self.touchable
+    }
+
+    /// Indices of the links with a surface that are fixed to a body.
+    pub fn links_of_body(&self, body: usize) -> &[usize] {
+        &self.body_links[body]
+    }
+
+    /// The bodies from the base to `body`, both included, the world not.
+    pub fn chain(&self, body: usize) -> &[usize] {
+        &self.chains[body]
+    }
+
+    /// Number of bodies, the world included.
+    pub fn body_count(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// The body that carries a body; the world carries itself.
+    pub fn parent_body(&self, body: usize) -> usize {
+        self.bodies[body].parent
+    }
+
+    /// The velocity variables of the joint that moves a body.
+    pub fn velocity_range(&self, body: usize) -> std::ops::Range<usize> {
+        let body = &self.bodies[body];
+        body.idx_v..body.idx_v + body.kind.nv()
+    }
+
+    /// What was odd in the description, and what was done about it.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// A link's index by its name.
+    ///
+    /// # Errors
+    /// [`Error::Input`] lists the names there are.
+    pub fn link(&self, name: &str) -> Result<usize> {
+        self.link_index.get(name).copied().ok_or_else(|| {
+            let names: Vec<&str> = self.links.iter().map(|link| link.name.as_str()).collect();
+            Error::Input(format!(
+                "link: there is no '{name}'; the links are {}",
+                names.join(", ")
+            ))
+        })
+    }
+}
+
+impl Body {
+    fn world() -> Self {
+        Self {
+            kind: JointKind::Revolute,
+            parent: WORLD,
+            placement: Pose::identity(),
+            idx_q: 0,
+            idx_v: 0,
+            mass: 0.0,
+            com: Vector3::zeros(),
+            inertia: Matrix3::zeros(),
+            armature: 0.0,
+        }
+    }
+}
+
+fn in_link(name: &str, error: Error) -> Error {
+    match error {
+        Error::Geometry(text) => Error::Geometry(format!("link '{name}': {text}")),
+        other => other,
+    }
+}

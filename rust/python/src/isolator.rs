@@ -1,0 +1,250 @@
+//! `ContactIsolator`, `Isolation`, `Contact` and `Candidate`.
+
+use std::sync::Arc;
+
+use contactsense::isolation::{Candidate, Contact, ContactIsolator, Isolation, IsolatorOptions};
+use contactsense::robot::Robot;
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+use crate::arrays::Vector;
+use crate::errors::to_python;
+use crate::observer::scalar_or_vector;
+use crate::robot::PyRobot;
+
+/// A place where the line of action meets a surface.
+#[pyclass(frozen, name = "Candidate", module = "contactsense._core")]
+pub struct PyCandidate {
+    robot: Arc<Robot>,
+    candidate: Candidate,
+}
+
+#[pymethods]
+impl PyCandidate {
+    #[getter]
+    fn link(&self) -> &str {
+        &self.robot.links()[self.candidate.link].name
+    }
+
+    #[getter]
+    fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.candidate.point.as_slice())
+    }
+
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.candidate.normal.as_slice())
+    }
+
+    #[getter]
+    fn pushing(&self) -> bool {
+        self.candidate.pushing
+    }
+
+    fn __repr__(&self) -> String {
+        let (p, kind) = (
+            &self.candidate.point,
+            if self.candidate.pushing {
+                "pushing"
+            } else {
+                "pulling"
+            },
+        );
+        format!(
+            "Candidate('{}', point=[{:.4}, {:.4}, {:.4}], {kind})",
+            self.link(),
+            p.x,
+            p.y,
+            p.z
+        )
+    }
+}
+
+/// One contact; vectors that the data do not determine are NaN.
+#[pyclass(frozen, name = "Contact", module = "contactsense._core")]
+pub struct PyContact {
+    robot: Arc<Robot>,
+    contact: Contact,
+    candidates: Vec<Candidate>,
+}
+
+#[pymethods]
+impl PyContact {
+    #[getter]
+    fn link(&self) -> &str {
+        &self.robot.links()[self.contact.link].name
+    }
+
+    #[getter]
+    fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.contact.point.as_slice())
+    }
+
+    #[getter]
+    fn point_local<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.contact.point_local.as_slice())
+    }
+
+    #[getter]
+    fn force<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.contact.force.as_slice())
+    }
+
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.contact.normal.as_slice())
+    }
+
+    #[getter]
+    fn wrench<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.contact.wrench.as_slice())
+    }
+
+    #[getter]
+    fn source(&self) -> &'static str {
+        "joint torques"
+    }
+
+    #[getter]
+    fn located(&self) -> bool {
+        self.contact.located
+    }
+
+    #[getter]
+    fn point_std(&self) -> f64 {
+        self.contact.point_std
+    }
+
+    #[getter]
+    fn candidates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let wrap = |candidate: &Candidate| PyCandidate {
+            robot: self.robot.clone(),
+            candidate: *candidate,
+        };
+        let list: Vec<Bound<'py, PyCandidate>> = self
+            .candidates
+            .iter()
+            .map(|candidate| Bound::new(py, wrap(candidate)))
+            .collect::<PyResult<_>>()?;
+        PyTuple::new(py, list)
+    }
+
+    fn __repr__(&self) -> String {
+        let (link, p, f) = (self.link(), &self.contact.point, self.contact.force.norm());
+        if self.contact.located {
+            format!(
+                "Contact('{link}', point=[{:.4}, {:.4}, {:.4}], |force|={f:.3} N)",
+                p.x, p.y, p.z
+            )
+        } else {
+            format!("Contact('{link}', located=False)")
+        }
+    }
+}
+
+/// All contacts of one instant.
+#[pyclass(frozen, name = "Isolation", module = "contactsense._core")]
+pub struct PyIsolation {
+    robot: Arc<Robot>,
+    isolation: Isolation,
+}
+
+/// A tuple of contacts that live on their own.
+pub fn contacts<'py>(
+    py: Python<'py>,
+    robot: &Arc<Robot>,
+    isolation: &Isolation,
+) -> PyResult<Bound<'py, PyTuple>> {
+    let wrap = |contact: &Contact| PyContact {
+        robot: robot.clone(),
+        candidates: isolation.candidates[contact.candidates.clone()].to_vec(),
+        contact: contact.clone(),
+    };
+    let list: Vec<Bound<'py, PyContact>> = isolation
+        .contacts
+        .iter()
+        .map(|contact| Bound::new(py, wrap(contact)))
+        .collect::<PyResult<_>>()?;
+    PyTuple::new(py, list)
+}
+
+/// Names of links.
+pub fn names<'py>(py: Python<'py>, robot: &Robot, links: &[usize]) -> PyResult<Bound<'py, PyTuple>> {
+    PyTuple::new(py, links.iter().map(|link| &robot.links()[*link].name))
+}
+
+#[pymethods]
+impl PyIsolation {
+    #[getter]
+    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        contacts(py, &self.robot, &self.isolation)
+    }
+
+    #[getter]
+    fn rank_deficit(&self) -> usize {
+        self.isolation.rank_deficit
+    }
+
+    #[getter]
+    fn residual(&self) -> f64 {
+        self.isolation.residual
+    }
+
+    #[getter]
+    fn link_candidates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        names(py, &self.robot, &self.isolation.link_candidates)
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "Isolation({} contacts, rank_deficit={}, residual={:.3e})",
+            self.isolation.contacts.len(),
+            self.isolation.rank_deficit,
+            self.isolation.residual
+        )
+    }
+}
+
+/// Finds the contact that explains an external torque.
+#[pyclass(name = "ContactIsolator", module = "contactsense._core")]
+pub struct PyContactIsolator(Arc<Robot>, ContactIsolator);
+
+#[pymethods]
+impl PyContactIsolator {
+    #[new]
+    #[pyo3(signature = (robot, *, torque_threshold=None, max_contacts=5, pushing=true))]
+    fn new(
+        robot: &Bound<'_, PyRobot>,
+        torque_threshold: Option<&Bound<'_, PyAny>>,
+        max_contacts: usize,
+        pushing: bool,
+    ) -> PyResult<Self> {
+        let threshold = torque_threshold.map_or(Ok(vec![1e-3]), |object| {
+            scalar_or_vector("torque_threshold", object)
+        })?;
+        let options = IsolatorOptions {
+            torque_threshold: threshold,
+            max_contacts,
+            pushing,
+        };
+        let arc = robot.get().0.clone();
+        let isolator = ContactIsolator::new(arc.clone(), &options);
+        Ok(Self(arc, isolator.map_err(|error| to_python(robot.py(), error))?))
+    }
+
+    fn isolate(
+        &mut self,
+        py: Python<'_>,
+        q: &Bound<'_, PyAny>,
+        tau_ext: &Bound<'_, PyAny>,
+    ) -> PyResult<PyIsolation> {
+        let (q, tau_ext) = (Vector::new("q", q)?, Vector::new("tau_ext", tau_ext)?);
+        let isolation = self.1.isolate(q.slice(), tau_ext.slice());
+        let isolation = isolation.map_err(|error| to_python(py, error))?.clone();
+        Ok(PyIsolation {
+            robot: self.0.clone(),
+            isolation,
+        })
+    }
+}

@@ -1,0 +1,138 @@
+//! `ContactMonitor` and `ContactReport`.
+
+use std::sync::Arc;
+
+use contactsense::isolation::IsolatorOptions;
+use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
+use contactsense::robot::Robot;
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+use crate::arrays::Vector;
+use crate::errors::to_python;
+use crate::isolator::{contacts, names};
+use crate::observer::scalar_or_vector;
+use crate::robot::PyRobot;
+
+/// What the monitor says of one tick.
+#[pyclass(frozen, name = "ContactReport", module = "contactsense._core")]
+pub struct PyContactReport {
+    robot: Arc<Robot>,
+    report: ContactReport,
+}
+
+#[pymethods]
+impl PyContactReport {
+    #[getter]
+    fn time(&self) -> f64 {
+        self.report.time
+    }
+
+    #[getter]
+    fn collision(&self) -> bool {
+        self.report.collision
+    }
+
+    #[getter]
+    fn onset(&self) -> bool {
+        self.report.onset
+    }
+
+    #[getter]
+    fn links<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        names(py, &self.robot, &self.report.links)
+    }
+
+    #[getter]
+    fn external_torque<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.report.external_torque)
+    }
+
+    #[getter]
+    fn acceleration<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.report.acceleration)
+    }
+
+    #[getter]
+    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        contacts(py, &self.robot, &self.report.isolation)
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "ContactReport(time={:.4}, collision={}, {} contacts)",
+            self.report.time,
+            if self.report.collision { "True" } else { "False" },
+            self.report.isolation.contacts.len()
+        )
+    }
+}
+
+/// The sense of touch of one robot, called once a control tick.
+#[pyclass(name = "ContactMonitor", module = "contactsense._core")]
+pub struct PyContactMonitor(ContactMonitor);
+
+#[pymethods]
+impl PyContactMonitor {
+    #[new]
+    #[pyo3(signature = (robot, *, dt, observer_gain=None, torque_threshold=None, bias_time_constant=None,
+                        hold_time=0.02, max_contacts=5, pushing=true))]
+    #[allow(clippy::too_many_arguments)] // the keywords of the Python class
+    fn new(
+        robot: &Bound<'_, PyRobot>,
+        dt: f64,
+        observer_gain: Option<&Bound<'_, PyAny>>,
+        torque_threshold: Option<&Bound<'_, PyAny>>,
+        bias_time_constant: Option<f64>,
+        hold_time: f64,
+        max_contacts: usize,
+        pushing: bool,
+    ) -> PyResult<Self> {
+        let or_default = |name, object: Option<&Bound<'_, PyAny>>, default| {
+            object.map_or(Ok(vec![default]), |object| scalar_or_vector(name, object))
+        };
+        let options = MonitorOptions {
+            dt,
+            observer_gain: or_default("observer_gain", observer_gain, 50.0)?,
+            isolation: IsolatorOptions {
+                torque_threshold: or_default("torque_threshold", torque_threshold, 0.5)?,
+                max_contacts,
+                pushing,
+            },
+            hold_time,
+            bias_time_constant,
+        };
+        let monitor = ContactMonitor::new(robot.get().0.clone(), &options);
+        Ok(Self(monitor.map_err(|error| to_python(robot.py(), error))?))
+    }
+
+    #[pyo3(signature = (q, v, tau, *, friction=None))]
+    fn update(
+        &mut self,
+        py: Python<'_>,
+        q: &Bound<'_, PyAny>,
+        v: &Bound<'_, PyAny>,
+        tau: &Bound<'_, PyAny>,
+        friction: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PyContactReport> {
+        let (q, v, tau) = (
+            Vector::new("q", q)?,
+            Vector::new("v", v)?,
+            Vector::new("tau", tau)?,
+        );
+        let friction = Vector::optional("friction", friction)?;
+        let friction = friction.as_ref().map(|friction| friction.slice());
+        self.0
+            .update(q.slice(), v.slice(), tau.slice(), friction)
+            .map_err(|error| to_python(py, error))?;
+        Ok(PyContactReport {
+            robot: self.0.robot().clone(),
+            report: self.0.report(),
+        })
+    }
+
+    fn reset(&mut self) {
+        self.0.reset();
+    }
+}

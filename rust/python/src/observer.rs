@@ -1,0 +1,70 @@
+//! `MomentumObserver`.
+
+use contactsense::observer::MomentumObserver;
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+use crate::arrays::Vector;
+use crate::errors::to_python;
+use crate::robot::PyRobot;
+
+/// A scalar, or one number per velocity variable.
+pub fn scalar_or_vector(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    match object.extract::<f64>() {
+        Ok(number) => Ok(vec![number]),
+        Err(_) => Ok(Vector::new(name, object)?.slice().to_vec()),
+    }
+}
+
+/// Estimates the external torque from positions, velocities and motor torques.
+#[pyclass(name = "MomentumObserver", module = "contactsense._core")]
+pub struct PyMomentumObserver(MomentumObserver);
+
+#[pymethods]
+impl PyMomentumObserver {
+    #[new]
+    #[pyo3(signature = (robot, *, dt, gain=None))]
+    fn new(robot: &Bound<'_, PyRobot>, dt: f64, gain: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let py = robot.py();
+        let gain = gain.map_or(Ok(vec![50.0]), |gain| scalar_or_vector("gain", gain))?;
+        let observer = MomentumObserver::new(robot.get().0.clone(), dt, &gain);
+        Ok(Self(observer.map_err(|error| to_python(py, error))?))
+    }
+
+    #[pyo3(signature = (q, v, tau, *, dt=None, friction=None))]
+    fn update<'py>(
+        &mut self,
+        q: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+        tau: &Bound<'py, PyAny>,
+        dt: Option<f64>,
+        friction: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let py = q.py();
+        let (q, v, tau) = (
+            Vector::new("q", q)?,
+            Vector::new("v", v)?,
+            Vector::new("tau", tau)?,
+        );
+        let friction = Vector::optional("friction", friction)?;
+        let friction = friction.as_ref().map(|friction| friction.slice());
+        match self.0.update(q.slice(), v.slice(), tau.slice(), friction, dt) {
+            Ok(torque) => Ok(PyArray1::from_slice(py, torque)),
+            Err(error) => Err(to_python(py, error)),
+        }
+    }
+
+    fn reset(&mut self) {
+        self.0.reset();
+    }
+
+    #[getter]
+    fn external_torque<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.0.external_torque())
+    }
+
+    #[getter]
+    fn acceleration<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.0.acceleration())
+    }
+}

@@ -1,0 +1,194 @@
+//! `Robot`.
+
+use std::sync::Arc;
+
+use contactsense::robot::Robot;
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+use crate::arrays::{matrix, pose, Vector};
+use crate::description::description;
+use crate::errors::{input, to_python};
+use crate::surface::PySurface;
+
+/// A robot: immutable, shareable between threads.
+#[pyclass(frozen, subclass, name = "Robot", module = "contactsense._core")]
+pub struct PyRobot(pub Arc<Robot>);
+
+#[pymethods]
+impl PyRobot {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        name: String,
+        joints: &Bound<'_, PyAny>,
+        links: &Bound<'_, PyAny>,
+        gravity: &Bound<'_, PyAny>,
+        warnings: Vec<String>,
+    ) -> PyResult<Self> {
+        let description = description(name, joints, links, gravity, warnings)?;
+        Ok(Self(Arc::new(
+            Robot::new(description).map_err(|error| to_python(py, error))?,
+        )))
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        self.0.name()
+    }
+
+    #[getter]
+    fn nq(&self) -> usize {
+        self.0.nq()
+    }
+
+    #[getter]
+    fn nv(&self) -> usize {
+        self.0.nv()
+    }
+
+    #[getter]
+    fn floating_base(&self) -> bool {
+        self.0.floating_base()
+    }
+
+    #[getter]
+    fn joint_names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.0.joint_names())
+    }
+
+    #[getter]
+    fn link_names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(
+            py,
+            self.0
+                .touchable_links()
+                .iter()
+                .map(|link| &self.0.links()[*link].name),
+        )
+    }
+
+    #[getter]
+    fn warnings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.0.warnings())
+    }
+
+    fn neutral<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_vec(py, self.0.neutral())
+    }
+
+    fn mass_matrix<'py>(&self, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let py = q.py();
+        let q = Vector::new("q", q)?;
+        matrix(
+            py,
+            &self
+                .0
+                .mass_matrix(q.slice())
+                .map_err(|error| to_python(py, error))?,
+        )
+    }
+
+    fn inverse_dynamics<'py>(
+        &self,
+        q: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+        a: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let py = q.py();
+        let (q, v, a) = (Vector::new("q", q)?, Vector::new("v", v)?, Vector::new("a", a)?);
+        let tau = self.0.inverse_dynamics(q.slice(), v.slice(), a.slice());
+        Ok(PyArray1::from_vec(py, tau.map_err(|error| to_python(py, error))?))
+    }
+
+    #[pyo3(signature = (q, v, tau, tau_ext=None))]
+    fn forward_dynamics<'py>(
+        &self,
+        q: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+        tau: &Bound<'py, PyAny>,
+        tau_ext: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let py = q.py();
+        let (q, v, tau) = (
+            Vector::new("q", q)?,
+            Vector::new("v", v)?,
+            Vector::new("tau", tau)?,
+        );
+        let tau_ext = Vector::optional("tau_ext", tau_ext)?;
+        let tau_ext = tau_ext.as_ref().map(|tau_ext| tau_ext.slice());
+        let a = self
+            .0
+            .forward_dynamics(q.slice(), v.slice(), tau.slice(), tau_ext);
+        Ok(PyArray1::from_vec(py, a.map_err(|error| to_python(py, error))?))
+    }
+
+    fn link_pose<'py>(&self, q: &Bound<'py, PyAny>, link: &str) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let py = q.py();
+        let q = Vector::new("q", q)?;
+        let link = self.0.link(link).map_err(|error| to_python(py, error))?;
+        pose(
+            py,
+            &self
+                .0
+                .link_pose(q.slice(), link)
+                .map_err(|error| to_python(py, error))?,
+        )
+    }
+
+    #[pyo3(signature = (q, link, point=None))]
+    fn jacobian<'py>(
+        &self,
+        q: &Bound<'py, PyAny>,
+        link: &str,
+        point: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let py = q.py();
+        let q = Vector::new("q", q)?;
+        let link = self.0.link(link).map_err(|error| to_python(py, error))?;
+        let point = Vector::optional("point", point)?;
+        let point = point.map(|point| point.fixed::<3>(py, "point")).transpose()?;
+        matrix(
+            py,
+            &self
+                .0
+                .jacobian(q.slice(), link, point)
+                .map_err(|error| to_python(py, error))?,
+        )
+    }
+
+    fn surface(&self, py: Python<'_>, link: &str) -> PyResult<PySurface> {
+        let index = self.0.link(link).map_err(|error| to_python(py, error))?;
+        if self.0.links()[index].surface.is_none() {
+            let names: Vec<&str> = self
+                .0
+                .touchable_links()
+                .iter()
+                .map(|i| self.0.links()[*i].name.as_str())
+                .collect();
+            return Err(input(
+                py,
+                format!(
+                    "link: '{link}' has no surface; links that have one: {}",
+                    names.join(", ")
+                ),
+            ));
+        }
+        Ok(PySurface {
+            robot: self.0.clone(),
+            link: index,
+        })
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "Robot('{}', {} joints, {} links with surface, nq={}, nv={})",
+            self.0.name(),
+            self.0.joint_names().len(),
+            self.0.touchable_links().len(),
+            self.0.nq(),
+            self.0.nv()
+        )
+    }
+}
