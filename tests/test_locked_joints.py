@@ -1,0 +1,79 @@
+"""Locked joints leave the model; their links stay where the joint holds them."""
+
+import math
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from urdf_text import ARM, write
+
+from contactsense._urdf import describe_urdf
+from contactsense.errors import InputError
+
+
+@pytest.fixture
+def arm(tmp_path):
+    return write(tmp_path, ARM)
+
+
+def world_poses(description):
+    """Link poses with every remaining joint at neutral."""
+    joints = [np.eye(4)]
+    for joint in description.joints:
+        joints.append(joints[joint.parent] @ joint.placement)
+    return {link.name: joints[link.joint] @ link.placement for link in description.links}
+
+
+def rotated(axis, angle):
+    return pin.SE3(pin.AngleAxis(angle, np.array(axis)).matrix(), np.zeros(3))
+
+
+@pytest.mark.parametrize("floating_base", [False, True])
+def test_links_behind_locked_joints_stay(arm, floating_base):
+    free = describe_urdf(arm, floating_base=floating_base)
+    locked = describe_urdf(arm, floating_base=floating_base, locked_joints={"elbow": 0.7, "rail": 0.2})
+    assert [link.name for link in locked.links] == [link.name for link in free.links]
+    assert [joint.name for joint in locked.joints if joint.kind != "free_flyer"] == ["shoulder"]
+    assert sum(joint.mass for joint in locked.joints) == pytest.approx(
+        sum(joint.mass for joint in free.joints)
+    )
+    elbow, rail = free.joints[-2:]
+    lower = pin.SE3(world_poses(free)["upper"]) * pin.SE3(elbow.placement) * rotated(elbow.axis, 0.7)
+    slide = lower * pin.SE3(rail.placement) * pin.SE3(np.eye(3), 0.2 * rail.axis)
+    np.testing.assert_allclose(world_poses(locked)["lower"], lower.homogeneous, atol=1e-12)
+    np.testing.assert_allclose(world_poses(locked)["slide"], slide.homogeneous, atol=1e-12)
+
+
+def test_names_alone_are_held_at_neutral(arm):
+    by_name = describe_urdf(arm, locked_joints=["elbow"])
+    by_position = describe_urdf(arm, locked_joints={"elbow": 0})
+    assert [joint.name for joint in by_name.joints] == ["shoulder", "rail"]
+    for name, pose in world_poses(by_name).items():
+        np.testing.assert_array_equal(pose, world_poses(by_position)[name])
+
+
+def test_all_joints_may_be_locked(arm):
+    description = describe_urdf(arm, locked_joints=("shoulder", "elbow", "rail"))
+    assert description.joints == []
+    assert {link.joint for link in description.links} == {0}
+
+
+def test_position_outside_the_limits_is_warned_of(arm):
+    assert describe_urdf(arm, locked_joints={"shoulder": 1.9}).warnings == []
+    assert describe_urdf(arm, locked_joints={"shoulder": 2.1}).warnings == [
+        "These joints are locked outside their limits: 'shoulder'"
+    ]
+
+
+@pytest.mark.parametrize(
+    "locked", ["elbow", 3, ["wrist"], {"wrist": 0.0}, ["flange"], [0], {"root_joint": 0.0}, [["elbow"]]]
+)
+def test_bad_names_list_the_valid_ones(arm, locked):
+    with pytest.raises(InputError, match="valid names: 'shoulder', 'elbow', 'rail'"):
+        describe_urdf(arm, floating_base=True, locked_joints=locked)
+
+
+@pytest.mark.parametrize("position", [math.nan, math.inf, None, "0.1", True, [0.1, 0.2], 10**400])
+def test_bad_position_names_the_joint(arm, position):
+    with pytest.raises(InputError, match="'elbow' must be a finite number"):
+        describe_urdf(arm, locked_joints={"elbow": position})

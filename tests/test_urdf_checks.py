@@ -1,0 +1,282 @@
+"""Bad URDF files are refused with a typed error that names what is wrong; odd ones load with a warning."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from urdf_text import ARM, SOLID, joint, link, robot, shape, write
+
+from contactsense._description import RobotDescription
+from contactsense._urdf import describe_urdf
+from contactsense.errors import ContactSenseError, GeometryError, InputError, ModelError
+
+AB = link("a") + link("b")
+LIMIT = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
+
+
+def inertial(mass: str = "1", **moments: str) -> str:
+    values = {"ixx": "1", "ixy": "0", "ixz": "0", "iyy": "1", "iyz": "0", "izz": "1", **moments}
+    row = " ".join(f'{key}="{value}"' for key, value in values.items())
+    return f'<inertial><mass value="{mass}"/><inertia {row}/></inertial>'
+
+
+def test_arm_is_described_as_written(tmp_path):
+    description = describe_urdf(write(tmp_path, ARM), gravity=(0, 0, 9))
+    assert description.name == "arm"
+    assert [j.name for j in description.joints] == ["shoulder", "elbow", "rail"]
+    assert [j.kind for j in description.joints] == ["revolute", "continuous", "prismatic"]
+    assert [j.parent for j in description.joints] == [0, 1, 2]
+    assert [(entry.name, entry.joint) for entry in description.links] == [
+        ("base", 0),
+        ("upper", 1),
+        ("lower", 2),
+        ("tool", 2),
+        ("slide", 3),
+    ]
+    shoulder, elbow, _ = description.joints
+    np.testing.assert_allclose(elbow.axis, [0, 0.6, 0.8], atol=1e-15)
+    assert (shoulder.lower, shoulder.upper, shoulder.effort) == (-1, 2, 30)
+    assert (elbow.lower, elbow.upper, elbow.effort) == (-math.inf, math.inf, math.inf)
+    assert shoulder.mass == 1
+    np.testing.assert_allclose(shoulder.com, [0, 0, 0.1], atol=1e-15)
+    shapes = {entry.name: [(g.kind, g.params) for g in entry.geometry] for entry in description.links}
+    assert shapes["upper"] == [("box", (0.1, 0.2, 0.3))]
+    assert shapes["lower"] == [("cylinder", (0.05, 0.3)), ("sphere", (0.1,))]
+    assert shapes["tool"] == [("capsule", (0.02, 0.1))]
+    np.testing.assert_array_equal(description.gravity, [0, 0, 9])
+    assert description.warnings == []
+
+
+def test_floating_base_is_joint_one(tmp_path):
+    description = describe_urdf(write(tmp_path, ARM), floating_base=True)
+    base = description.joints[0]
+    assert (base.kind, base.parent, base.lower, base.upper) == ("free_flyer", 0, -math.inf, math.inf)
+    assert base.mass == 1
+    assert [entry.joint for entry in description.links] == [1, 2, 3, 3, 4]
+
+
+BAD_MODELS = {
+    "not XML": ("<robot", "not XML"),
+    "empty file": ("", "not XML"),
+    "other root": ("<model/>", "root element is <model>"),
+    "no links": (robot(), "no links"),
+    "link without name": (robot("<link/>"), "<link> has no name"),
+    "joint without name": (robot(AB, '<joint type="fixed"/>'), "<joint> has no name"),
+    "duplicate link": (robot(link("a"), link("a")), "link names must be unique.*'a'"),
+    "duplicate joint": (
+        robot(AB, link("c"), joint("j", "a", "b"), joint("j", "a", "c")),
+        "joint names .*'j'",
+    ),
+    "unknown link": (robot(AB, joint("j", "a", "ghost")), "joint 'j' names the link 'ghost'"),
+    "no parent": (
+        robot(AB, '<joint name="j" type="fixed"><child link="b"/></joint>'),
+        "joint 'j' needs <parent",
+    ),
+    "two parents": (
+        robot(AB, link("c"), joint("j", "a", "c"), joint("k", "b", "c")),
+        "link 'c' has two parents, 'a' and 'b'",
+    ),
+    "two roots": (robot(AB), "one root.*'a', 'b'"),
+    "only a cycle": (robot(AB, joint("j", "a", "b"), joint("k", "b", "a")), "cycle: 'a', 'b'"),
+    "root and cycle": (robot(AB, link("c"), joint("j", "b", "c"), joint("k", "c", "b")), "cycle: 'b', 'c'"),
+    "own parent": (robot(link("a"), joint("j", "a", "a")), "cycle: 'a'"),
+    "zero axis": (robot(AB, joint("j", "a", "b", inside='<axis xyz="0 0 0"/>' + LIMIT)), "joint 'j': <axis>"),
+    "nan axis": (robot(AB, joint("j", "a", "b", inside='<axis xyz="nan 0 0"/>' + LIMIT)), "joint 'j': 'xyz'"),
+    "short axis": (robot(AB, joint("j", "a", "b", inside='<axis xyz="1 0"/>' + LIMIT)), "3 finite numbers"),
+    "malformed limit": (
+        robot(AB, joint("j", "a", "b", inside='<limit lower="low" effort="1" velocity="1"/>')),
+        "joint 'j': 'lower'.*'low'",
+    ),
+    "infinite limit": (
+        robot(AB, joint("j", "a", "b", inside='<limit lower="-1e999" effort="1" velocity="1"/>')),
+        "joint 'j': 'lower'",
+    ),
+    "negative effort": (
+        robot(AB, joint("j", "a", "b", inside='<limit effort="-1" velocity="1"/>')),
+        "joint 'j': 'effort'.*negative",
+    ),
+    "revolute without limit": (robot(AB, joint("j", "a", "b", inside="")), "joint 'j' is revolute and needs"),
+    "unknown type": (
+        robot(AB, joint("j", "a", "b", "hinge")),
+        "joint 'j' has the type 'hinge'; supported: rev",
+    ),
+    "planar": (robot(AB, joint("j", "a", "b", "planar")), "joint 'j' has the type 'planar'; supported: rev"),
+    "floating": (
+        robot(AB, joint("j", "a", "b", "floating")),
+        "joint 'j' has the type 'floating'.*floating_base",
+    ),
+    "reserved name": (robot(AB, joint("universe", "a", "b")), "joint 'universe' has a name that Pinocchio"),
+    "bad origin": (
+        robot(AB, joint("j", "a", "b").replace("0 0 0.3", "0 0 x")),
+        "joint 'j': 'xyz' of <origin>",
+    ),
+    "negative mass": (robot(link("a", inertial("-1"))), "link 'a': mass must not be negative"),
+    "nan mass": (robot(link("a", inertial("nan"))), "link 'a': 'value' of <mass>"),
+    "infinite inertia": (robot(link("a", inertial(ixx="inf"))), "link 'a': 'ixx'"),
+    "missing inertia": (
+        robot(link("a", '<inertial><mass value="1"/></inertial>')),
+        "link 'a': <inertial> needs",
+    ),
+    "negative inertia": (
+        robot(link("a"), link("b", inertial(iyy="-1")), joint("j", "a", "b")),
+        "joint 'j'.*'b'.*negative principal moment",
+    ),
+    "huge number": (robot(link("a", inertial("1e300"))), "link 'a': 'value' of <mass>.*up to"),
+    "deep chain": (
+        robot(
+            *(link(str(i)) for i in range(1200)), *(joint(f"j{i}", str(i), str(i + 1)) for i in range(1199))
+        ),
+        "longer than 1000",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", BAD_MODELS)
+def test_bad_model_is_refused_by_name(case, tmp_path):
+    text, message = BAD_MODELS[case]
+    with pytest.raises(ModelError, match=message):
+        describe_urdf(write(tmp_path, text))
+
+
+def test_missing_file_is_named(tmp_path):
+    with pytest.raises(ModelError, match=re.escape(str(tmp_path / "none.urdf"))):
+        describe_urdf(tmp_path / "none.urdf")
+    with pytest.raises(ModelError, match=re.escape(str(tmp_path))):
+        describe_urdf(tmp_path)
+
+
+def test_name_of_the_floating_base_joint_is_reserved(tmp_path):
+    path = write(tmp_path, ARM.replace("shoulder", "root_joint"))
+    assert describe_urdf(path).joints[0].name == "root_joint"
+    with pytest.raises(ModelError, match="'root_joint'"):
+        describe_urdf(path, floating_base=True)
+
+
+@pytest.mark.parametrize(
+    ("body", "message"),
+    [
+        ('<box size="0.1 0 0.1"/>', "link 'a'.*<box> must be positive"),
+        ('<box size="0.1 0.1"/>', "link 'a'.*3 finite numbers"),
+        ("<box/>", "link 'a'.*'size'"),
+        ('<sphere radius="-1"/>', "link 'a'.*<sphere> must be positive"),
+        ('<sphere radius="nan"/>', "link 'a'.*'radius'"),
+        ('<cylinder radius="1"/>', "link 'a'.*needs the attribute 'length'"),
+        ('<capsule radius="1" length="0"/>', "link 'a'.*<capsule> must be positive"),
+        ('<cone radius="1" length="1"/>', "link 'a'.*unknown shape <cone>; supported: mesh, box"),
+        ("", "link 'a'.*needs one <geometry>"),
+        ("<mesh/>", "link 'a'.*'filename'"),
+        ('<mesh filename="a.stl" scale="1 1 0"/>', "link 'a'.*must not be zero"),
+        ('<mesh filename="a.stl" scale="1 1 inf"/>', "link 'a'.*'scale'"),
+    ],
+)
+def test_bad_shape_is_refused_by_link(body, message, tmp_path):
+    path = write(tmp_path, robot(link("a", SOLID + shape(body))))
+    with pytest.raises(GeometryError, match=message):
+        describe_urdf(path)
+    # Shapes of the other role are not looked at.
+    assert describe_urdf(path, geometry="visual").links[0].geometry == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"geometry": "both"}, "'collision' or 'visual'"),
+        ({"geometry": None}, "'collision' or 'visual'"),
+        ({"gravity": (0, 0)}, "gravity must be 3"),
+        ({"gravity": (0, 0, math.nan)}, "gravity must be 3"),
+        ({"gravity": "down"}, "gravity must be 3"),
+        ({"package_dirs": 3}, "package_dirs"),
+        ({"package_dirs": [3]}, "package_dirs"),
+    ],
+)
+def test_bad_argument_is_named(arguments, message, tmp_path):
+    with pytest.raises(InputError, match=message):
+        describe_urdf(write(tmp_path, ARM), **arguments)
+
+
+def test_bad_path_is_an_input_error():
+    with pytest.raises(InputError, match="path must be"):
+        describe_urdf(3)
+
+
+def test_mimic_joints_stay_independent_with_one_warning(tmp_path):
+    mimic = joint("k", "b", "c", inside='<axis xyz="1 0 0"/>' + LIMIT + '<mimic joint="j"/>')
+    description = describe_urdf(write(tmp_path, robot(AB, link("c"), joint("j", "a", "b"), mimic)))
+    assert [entry.name for entry in description.joints] == ["j", "k"]
+    assert [w for w in description.warnings if "mimic" in w] == [
+        "Joints that mimic another (kept as independent joints): 'k' ('j')"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("body", "warning"),
+    [
+        (link("b", inertial(ixx="5")) + joint("j", "a", "b"), "no rigid body has.*'b'"),
+        (link("b", "") + joint("j", "a", "b"), "no <inertial>.*'b'"),
+        (link("b", "") + joint("j", "a", "b"), "mass matrix is singular.*'j'"),
+        (
+            link("b", inertial("0", ixx="0", iyy="0", izz="0")) + joint("j", "a", "b"),
+            "matrix is singular.*'j'",
+        ),
+        (link("b") + joint("j", "a", "b", inside='<axis xyz="0 0 2"/>' + LIMIT), "not of unit length.*'j'"),
+        (
+            link("b") + joint("j", "a", "b", inside='<limit lower="1" upper="-1" effort="1" velocity="1"/>'),
+            "leave no range.*'j'",
+        ),
+        (link("b") + joint("j", "a", "b"), "no surface"),
+    ],
+)
+def test_oddity_is_warned_of(body, warning, tmp_path):
+    description = describe_urdf(write(tmp_path, robot(link("a"), body)))
+    assert any(re.search(warning, text) for text in description.warnings), description.warnings
+
+
+def test_zero_mass_link_inside_a_chain_is_not_called_singular(tmp_path):
+    text = robot(
+        link("a"), link("b", ""), link("c"), joint("j", "a", "b"), joint("k", "b", "c", inside=LIMIT)
+    )
+    assert not any("singular" in text for text in describe_urdf(write(tmp_path, text)).warnings)
+
+
+def test_nameless_robot_takes_the_file_name(tmp_path):
+    path = write(tmp_path, ARM.replace(' name="arm"', ""), "walker.urdf")
+    assert describe_urdf(path).name == "walker"
+
+
+def load_or_refuse(path):
+    try:
+        assert isinstance(describe_urdf(path), RobotDescription)
+    except ContactSenseError as error:
+        assert str(error)  # noqa: PT017
+
+
+@settings(max_examples=400, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(changes=st.lists(st.tuples(st.integers(0, len(ARM) - 1), st.integers(0, 255)), min_size=1, max_size=6))
+def test_corrupt_bytes_raise_nothing_but_our_errors(changes, tmp_path):
+    text = bytearray(ARM.encode())
+    for position, byte in changes:
+        text[position] = byte
+    load_or_refuse(write(tmp_path, bytes(text)))
+
+
+NUMBERS = [found.span() for found in re.finditer(r"(?<=[\" ])-?[\d.]+(?=[\" ])", ARM)][1:]
+
+
+@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    span=st.sampled_from(NUMBERS),
+    number=st.one_of(
+        st.floats().map(repr), st.sampled_from(["1e12", "-1e12", "1e-320", "0", "-0", "1,5", "٣", ""])
+    ),
+)
+def test_any_number_in_any_place_raises_nothing_but_our_errors(span, number, tmp_path):
+    load_or_refuse(write(tmp_path, ARM[: span[0]] + number + ARM[span[1] :]))
+
+
+@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(start=st.integers(0, len(ARM)), length=st.integers(1, 200))
+def test_cut_text_raises_nothing_but_our_errors(start, length, tmp_path):
+    load_or_refuse(write(tmp_path, ARM[:start] + ARM[start + length :]))
