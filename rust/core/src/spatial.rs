@@ -14,10 +14,7 @@ pub struct Pose {
 impl Pose {
     /// The identity.
     pub fn identity() -> Self {
-        Self {
-            rotation: Matrix3::identity(),
-            translation: Vector3::zeros(),
-        }
+        Self { rotation: Matrix3::identity(), translation: Vector3::zeros() }
     }
 
     /// `self` after `inner`: takes a point of `inner`'s local frame to `self`'s outer frame.

@@ -20,10 +20,7 @@ impl<'py> Vector<'py> {
         let converted = convert(name, object)?;
         match converted.cast_into::<PyArray1<f64>>() {
             Ok(array) => Ok(Self(array.readonly())),
-            Err(_) => Err(input(
-                object.py(),
-                format!("{name}: expected an array with one dimension"),
-            )),
+            Err(_) => Err(input(object.py(), format!("{name}: expected an array with one dimension"))),
         }
     }
 
@@ -56,10 +53,7 @@ pub fn rows<const N: usize>(name: &str, object: &Bound<'_, PyAny>) -> PyResult<V
             return Err(wrong());
         }
         let slice = view.as_slice().map_err(|_| wrong())?;
-        slice
-            .chunks_exact(N)
-            .map(|row| std::array::from_fn(|i| row[i]))
-            .collect()
+        slice.chunks_exact(N).map(|row| std::array::from_fn(|i| row[i])).collect()
     } else if let Ok(array) = converted.cast::<PyArray1<f64>>() {
         let view = array.readonly();
         let slice = view.as_slice().map_err(|_| wrong())?;
@@ -89,9 +83,7 @@ fn convert<'py>(name: &str, object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, P
     let kwargs = pyo3::types::PyDict::new(py);
     kwargs.set_item("dtype", "float64")?;
     kwargs.set_item("order", "C")?;
-    numpy
-        .call_method("asarray", (array,), Some(&kwargs))
-        .map_err(refused)
+    numpy.call_method("asarray", (array,), Some(&kwargs)).map_err(refused)
 }
 
 /// A fresh `(rows, columns)` array.

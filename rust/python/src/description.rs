@@ -13,18 +13,13 @@ use crate::arrays::{rows, Vector};
 use crate::errors::{input, to_python};
 
 fn vector(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vector3<f64>> {
-    Ok(Vector3::from(
-        Vector::new(name, object)?.fixed::<3>(object.py(), name)?,
-    ))
+    Ok(Vector3::from(Vector::new(name, object)?.fixed::<3>(object.py(), name)?))
 }
 
 fn square(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Matrix3<f64>> {
     match rows::<3>(name, object)?.as_slice() {
         [a, b, c] => Ok(Matrix3::from_row_slice(&[*a, *b, *c].concat())),
-        _ => Err(input(
-            object.py(),
-            format!("{name}: expected an array of shape (3, 3)"),
-        )),
+        _ => Err(input(object.py(), format!("{name}: expected an array of shape (3, 3)"))),
     }
 }
 
@@ -34,10 +29,7 @@ fn placement(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Pose> {
             rotation: Matrix3::new(a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]),
             translation: Vector3::new(a[3], b[3], c[3]),
         }),
-        _ => Err(input(
-            object.py(),
-            format!("{name}: expected an array of shape (4, 4)"),
-        )),
+        _ => Err(input(object.py(), format!("{name}: expected an array of shape (4, 4)"))),
     }
 }
 
@@ -88,39 +80,23 @@ fn part(tuple: &Bound<'_, PyTuple>) -> PyResult<Part> {
         }
         "box" => {
             let size: [f64; 3] = sizes.extract()?;
-            Geometry::Box {
-                half_extents: size.map(|x| 0.5 * x),
-            }
+            Geometry::Box { half_extents: size.map(|x| 0.5 * x) }
         }
         "cylinder" => {
             let (radius, length): (f64, f64) = sizes.extract()?;
-            Geometry::Cylinder {
-                radius,
-                half_length: 0.5 * length,
-            }
+            Geometry::Cylinder { radius, half_length: 0.5 * length }
         }
         "capsule" => {
             let (radius, length): (f64, f64) = sizes.extract()?;
-            Geometry::Capsule {
-                radius,
-                half_length: 0.5 * length,
-            }
+            Geometry::Capsule { radius, half_length: 0.5 * length }
         }
         "sphere" => {
             let (radius,): (f64,) = sizes.extract()?;
             Geometry::Sphere { radius }
         }
-        other => {
-            return Err(to_python(
-                py,
-                Error::Geometry(format!("unknown geometry kind '{other}'")),
-            ))
-        }
+        other => return Err(to_python(py, Error::Geometry(format!("unknown geometry kind '{other}'")))),
     };
-    Ok(Part {
-        geometry,
-        pose: placement("placement", &tuple.get_item(2)?)?,
-    })
+    Ok(Part { geometry, pose: placement("placement", &tuple.get_item(2)?)? })
 }
 
 fn link(tuple: &Bound<'_, PyTuple>) -> PyResult<LinkDescription> {

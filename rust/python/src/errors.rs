@@ -12,11 +12,7 @@ fn classes(py: Python<'_>) -> PyResult<&[Py<PyType>; 3]> {
         let module = py.import("contactsense.errors")?;
         let class =
             |name| -> PyResult<Py<PyType>> { Ok(module.getattr(name)?.cast_into::<PyType>()?.unbind()) };
-        Ok([
-            class("ModelError")?,
-            class("GeometryError")?,
-            class("InputError")?,
-        ])
+        Ok([class("ModelError")?, class("GeometryError")?, class("InputError")?])
     })
 }
 

@@ -43,21 +43,8 @@ impl PyCandidate {
     }
 
     fn __repr__(&self) -> String {
-        let (p, kind) = (
-            &self.candidate.point,
-            if self.candidate.pushing {
-                "pushing"
-            } else {
-                "pulling"
-            },
-        );
-        format!(
-            "Candidate('{}', point=[{:.4}, {:.4}, {:.4}], {kind})",
-            self.link(),
-            p.x,
-            p.y,
-            p.z
-        )
+        let (p, kind) = (&self.candidate.point, if self.candidate.pushing { "pushing" } else { "pulling" });
+        format!("Candidate('{}', point=[{:.4}, {:.4}, {:.4}], {kind})", self.link(), p.x, p.y, p.z)
     }
 }
 
@@ -118,10 +105,7 @@ impl PyContact {
 
     #[getter]
     fn candidates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        let wrap = |candidate: &Candidate| PyCandidate {
-            robot: self.robot.clone(),
-            candidate: *candidate,
-        };
+        let wrap = |candidate: &Candidate| PyCandidate { robot: self.robot.clone(), candidate: *candidate };
         let list: Vec<Bound<'py, PyCandidate>> = self
             .candidates
             .iter()
@@ -133,10 +117,7 @@ impl PyContact {
     fn __repr__(&self) -> String {
         let (link, p, f) = (self.link(), &self.contact.point, self.contact.force.norm());
         if self.contact.located {
-            format!(
-                "Contact('{link}', point=[{:.4}, {:.4}, {:.4}], |force|={f:.3} N)",
-                p.x, p.y, p.z
-            )
+            format!("Contact('{link}', point=[{:.4}, {:.4}, {:.4}], |force|={f:.3} N)", p.x, p.y, p.z)
         } else {
             format!("Contact('{link}', located=False)")
         }
@@ -161,11 +142,8 @@ pub fn contacts<'py>(
         candidates: isolation.candidates[contact.candidates.clone()].to_vec(),
         contact: contact.clone(),
     };
-    let list: Vec<Bound<'py, PyContact>> = isolation
-        .contacts
-        .iter()
-        .map(|contact| Bound::new(py, wrap(contact)))
-        .collect::<PyResult<_>>()?;
+    let list: Vec<Bound<'py, PyContact>> =
+        isolation.contacts.iter().map(|contact| Bound::new(py, wrap(contact))).collect::<PyResult<_>>()?;
     PyTuple::new(py, list)
 }
 
@@ -220,14 +198,9 @@ impl PyContactIsolator {
         max_contacts: usize,
         pushing: bool,
     ) -> PyResult<Self> {
-        let threshold = torque_threshold.map_or(Ok(vec![1e-3]), |object| {
-            scalar_or_vector("torque_threshold", object)
-        })?;
-        let options = IsolatorOptions {
-            torque_threshold: threshold,
-            max_contacts,
-            pushing,
-        };
+        let threshold =
+            torque_threshold.map_or(Ok(vec![1e-3]), |object| scalar_or_vector("torque_threshold", object))?;
+        let options = IsolatorOptions { torque_threshold: threshold, max_contacts, pushing };
         let arc = robot.get().0.clone();
         let isolator = ContactIsolator::new(arc.clone(), &options);
         Ok(Self(arc, isolator.map_err(|error| to_python(robot.py(), error))?))
@@ -242,9 +215,6 @@ impl PyContactIsolator {
         let (q, tau_ext) = (Vector::new("q", q)?, Vector::new("tau_ext", tau_ext)?);
         let isolation = self.1.isolate(q.slice(), tau_ext.slice());
         let isolation = isolation.map_err(|error| to_python(py, error))?.clone();
-        Ok(PyIsolation {
-            robot: self.0.clone(),
-            isolation,
-        })
+        Ok(PyIsolation { robot: self.0.clone(), isolation })
     }
 }

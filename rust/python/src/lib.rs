@@ -13,14 +13,7 @@ mod surface;
 
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add(
-        "build_profile",
-        if cfg!(debug_assertions) {
-            "debug"
-        } else {
-            "release"
-        },
-    )?;
+    module.add("build_profile", if cfg!(debug_assertions) { "debug" } else { "release" })?;
     module.add_class::<robot::PyRobot>()?;
     module.add_class::<surface::PySurface>()?;
     module.add_class::<surface::ClosestPoints>()?;

@@ -116,20 +116,11 @@ impl PyContactMonitor {
         tau: &Bound<'_, PyAny>,
         friction: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyContactReport> {
-        let (q, v, tau) = (
-            Vector::new("q", q)?,
-            Vector::new("v", v)?,
-            Vector::new("tau", tau)?,
-        );
+        let (q, v, tau) = (Vector::new("q", q)?, Vector::new("v", v)?, Vector::new("tau", tau)?);
         let friction = Vector::optional("friction", friction)?;
         let friction = friction.as_ref().map(|friction| friction.slice());
-        self.0
-            .update(q.slice(), v.slice(), tau.slice(), friction)
-            .map_err(|error| to_python(py, error))?;
-        Ok(PyContactReport {
-            robot: self.0.robot().clone(),
-            report: self.0.report(),
-        })
+        self.0.update(q.slice(), v.slice(), tau.slice(), friction).map_err(|error| to_python(py, error))?;
+        Ok(PyContactReport { robot: self.0.robot().clone(), report: self.0.report() })
     }
 
     fn reset(&mut self) {

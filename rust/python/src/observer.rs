@@ -41,11 +41,7 @@ impl PyMomentumObserver {
         friction: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let py = q.py();
-        let (q, v, tau) = (
-            Vector::new("q", q)?,
-            Vector::new("v", v)?,
-            Vector::new("tau", tau)?,
-        );
+        let (q, v, tau) = (Vector::new("q", q)?, Vector::new("v", v)?, Vector::new("tau", tau)?);
         let friction = Vector::optional("friction", friction)?;
         let friction = friction.as_ref().map(|friction| friction.slice());
         match self.0.update(q.slice(), v.slice(), tau.slice(), friction, dt) {

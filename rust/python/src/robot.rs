@@ -28,9 +28,7 @@ impl PyRobot {
         warnings: Vec<String>,
     ) -> PyResult<Self> {
         let description = description(name, joints, links, gravity, warnings)?;
-        Ok(Self(Arc::new(
-            Robot::new(description).map_err(|error| to_python(py, error))?,
-        )))
+        Ok(Self(Arc::new(Robot::new(description).map_err(|error| to_python(py, error))?)))
     }
 
     #[getter]
@@ -60,13 +58,7 @@ impl PyRobot {
 
     #[getter]
     fn link_names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        PyTuple::new(
-            py,
-            self.0
-                .touchable_links()
-                .iter()
-                .map(|link| &self.0.links()[*link].name),
-        )
+        PyTuple::new(py, self.0.touchable_links().iter().map(|link| &self.0.links()[*link].name))
     }
 
     #[getter]
@@ -81,13 +73,7 @@ impl PyRobot {
     fn mass_matrix<'py>(&self, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let py = q.py();
         let q = Vector::new("q", q)?;
-        matrix(
-            py,
-            &self
-                .0
-                .mass_matrix(q.slice())
-                .map_err(|error| to_python(py, error))?,
-        )
+        matrix(py, &self.0.mass_matrix(q.slice()).map_err(|error| to_python(py, error))?)
     }
 
     fn inverse_dynamics<'py>(
@@ -111,16 +97,10 @@ impl PyRobot {
         tau_ext: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let py = q.py();
-        let (q, v, tau) = (
-            Vector::new("q", q)?,
-            Vector::new("v", v)?,
-            Vector::new("tau", tau)?,
-        );
+        let (q, v, tau) = (Vector::new("q", q)?, Vector::new("v", v)?, Vector::new("tau", tau)?);
         let tau_ext = Vector::optional("tau_ext", tau_ext)?;
         let tau_ext = tau_ext.as_ref().map(|tau_ext| tau_ext.slice());
-        let a = self
-            .0
-            .forward_dynamics(q.slice(), v.slice(), tau.slice(), tau_ext);
+        let a = self.0.forward_dynamics(q.slice(), v.slice(), tau.slice(), tau_ext);
         Ok(PyArray1::from_vec(py, a.map_err(|error| to_python(py, error))?))
     }
 
@@ -128,13 +108,7 @@ impl PyRobot {
         let py = q.py();
         let q = Vector::new("q", q)?;
         let link = self.0.link(link).map_err(|error| to_python(py, error))?;
-        pose(
-            py,
-            &self
-                .0
-                .link_pose(q.slice(), link)
-                .map_err(|error| to_python(py, error))?,
-        )
+        pose(py, &self.0.link_pose(q.slice(), link).map_err(|error| to_python(py, error))?)
     }
 
     #[pyo3(signature = (q, link, point=None))]
@@ -149,36 +123,20 @@ impl PyRobot {
         let link = self.0.link(link).map_err(|error| to_python(py, error))?;
         let point = Vector::optional("point", point)?;
         let point = point.map(|point| point.fixed::<3>(py, "point")).transpose()?;
-        matrix(
-            py,
-            &self
-                .0
-                .jacobian(q.slice(), link, point)
-                .map_err(|error| to_python(py, error))?,
-        )
+        matrix(py, &self.0.jacobian(q.slice(), link, point).map_err(|error| to_python(py, error))?)
     }
 
     fn surface(&self, py: Python<'_>, link: &str) -> PyResult<PySurface> {
         let index = self.0.link(link).map_err(|error| to_python(py, error))?;
         if self.0.links()[index].surface.is_none() {
-            let names: Vec<&str> = self
-                .0
-                .touchable_links()
-                .iter()
-                .map(|i| self.0.links()[*i].name.as_str())
-                .collect();
+            let names: Vec<&str> =
+                self.0.touchable_links().iter().map(|i| self.0.links()[*i].name.as_str()).collect();
             return Err(input(
                 py,
-                format!(
-                    "link: '{link}' has no surface; links that have one: {}",
-                    names.join(", ")
-                ),
+                format!("link: '{link}' has no surface; links that have one: {}", names.join(", ")),
             ));
         }
-        Ok(PySurface {
-            robot: self.0.clone(),
-            link: index,
-        })
+        Ok(PySurface { robot: self.0.clone(), link: index })
     }
 
     fn __repr__(&self) -> String {

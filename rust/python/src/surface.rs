@@ -68,11 +68,7 @@ impl PySurface {
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
         use numpy::PyArrayMethods;
         let triangles = self.core(py)?.triangles();
-        let flat: Vec<i64> = triangles
-            .iter()
-            .flatten()
-            .map(|index| i64::from(*index))
-            .collect();
+        let flat: Vec<i64> = triangles.iter().flatten().map(|index| i64::from(*index)).collect();
         PyArray1::from_vec(py, flat).reshape([triangles.len(), 3])
     }
 
@@ -89,12 +85,8 @@ impl PySurface {
     fn closest_points(&self, py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<ClosestPoints> {
         let surface = self.core(py)?;
         let points = rows::<3>("points", points)?;
-        let found: Vec<_> = py.detach(|| {
-            points
-                .iter()
-                .map(|p| surface.closest_point(&Vector3::from(*p)))
-                .collect()
-        });
+        let found: Vec<_> =
+            py.detach(|| points.iter().map(|p| surface.closest_point(&Vector3::from(*p))).collect());
         Ok(ClosestPoints {
             points: from_rows(py, found.iter().map(|hit| array(&hit.point)))?.unbind(),
             normals: from_rows(py, found.iter().map(|hit| array(&hit.normal)))?.unbind(),

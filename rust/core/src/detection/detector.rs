@@ -50,17 +50,10 @@ impl Detector {
     pub fn update(&mut self, external_torque: &[f64], dt: f64) -> bool {
         let before = self.collision;
         self.collision = false;
-        for ((remaining, threshold), torque) in self
-            .remaining
-            .iter_mut()
-            .zip(&self.threshold)
-            .zip(external_torque)
+        for ((remaining, threshold), torque) in
+            self.remaining.iter_mut().zip(&self.threshold).zip(external_torque)
         {
-            *remaining = if torque.abs() > *threshold {
-                self.hold_time
-            } else {
-                *remaining - dt
-            };
+            *remaining = if torque.abs() > *threshold { self.hold_time } else { *remaining - dt };
             self.collision |= *remaining >= 0.0;
         }
         self.onset = self.collision && !before;

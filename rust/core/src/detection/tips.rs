@@ -13,10 +13,7 @@ impl TipSearch {
     /// Space for a robot's bodies.
     pub fn new(robot: &Robot) -> Self {
         let count = robot.body_count();
-        Self {
-            felt_behind: vec![false; count],
-            tips: Vec::with_capacity(count),
-        }
+        Self { felt_behind: vec![false; count], tips: Vec::with_capacity(count) }
     }
 
     /// The tips, farthest from the base first; `over(k)` tells whether velocity variable k is over its threshold.

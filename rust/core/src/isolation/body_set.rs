@@ -12,9 +12,7 @@ pub(super) struct BodySet {
 
 impl BodySet {
     pub fn new(robot: &Robot) -> Self {
-        Self {
-            member: vec![false; robot.body_count()],
-        }
+        Self { member: vec![false; robot.body_count()] }
     }
 
     /// `first`, and every body behind it whose joints would not feel `wrench` more than they do.

@@ -34,11 +34,7 @@ pub struct IsolatorOptions {
 
 impl Default for IsolatorOptions {
     fn default() -> Self {
-        Self {
-            torque_threshold: vec![1e-3],
-            max_contacts: 5,
-            pushing: true,
-        }
+        Self { torque_threshold: vec![1e-3], max_contacts: 5, pushing: true }
     }
 }
 
@@ -106,10 +102,7 @@ impl ContactIsolator {
         self.isolation.clear();
         self.unexplained.copy_from_slice(tau_ext);
         let threshold = &self.threshold;
-        let tips = self
-            .tips
-            .find(&self.robot, |k| tau_ext[k].abs() > threshold[k])
-            .len();
+        let tips = self.tips.find(&self.robot, |k| tau_ext[k].abs() > threshold[k]).len();
         if tips == 1 {
             self.isolate_single(kinematics, self.tips.tips()[0], tau_ext);
         } else {
@@ -140,8 +133,7 @@ impl ContactIsolator {
                 self.explain(kinematics, body, &wrench);
                 return;
             }
-            self.bodies
-                .grow(&self.robot, kinematics, tip, &wrench, tau_ext, &self.threshold);
+            self.bodies.grow(&self.robot, kinematics, tip, &wrench, tau_ext, &self.threshold);
             let hit = self.cast(kinematics, &wrench).or_else(|| {
                 self.bodies.grow_all(&self.robot, tip);
                 self.cast(kinematics, &wrench)
@@ -165,18 +157,13 @@ impl ContactIsolator {
 
     /// Casts the line of action on the links in question; the first hit where the force enters.
     fn cast(&mut self, kinematics: &Kinematics, wrench: &WrenchEstimate) -> Option<Candidate> {
-        let Isolation {
-            candidates,
-            link_candidates,
-            ..
-        } = &mut self.isolation;
+        let Isolation { candidates, link_candidates, .. } = &mut self.isolation;
         candidates.clear();
         link_candidates.clear();
         link_candidates.extend(self.bodies.links(&self.robot));
         let (start, direction) = wrench.line_of_action()?;
         for &link in link_candidates.iter() {
-            self.line
-                .cast(&self.robot, kinematics, link, &start, &direction, candidates);
+            self.line.cast(&self.robot, kinematics, link, &start, &direction, candidates);
         }
         best_first(candidates);
         let best = candidates.first().copied().filter(|hit| hit.pushing)?;
@@ -207,9 +194,7 @@ impl ContactIsolator {
             }
         }
         // A full-rank wrench leaves the force regular; keep the wrench's force should rounding say otherwise.
-        let force = normal_matrix
-            .cholesky()
-            .map_or(wrench.force, |factor| factor.solve(&rhs));
+        let force = normal_matrix.cholesky().map_or(wrench.force, |factor| factor.solve(&rhs));
         let (mut squares, mut misfit) = (0.0, 0.0);
         for &joint in robot.chain(link.body) {
             for (column, k) in robot.velocity_range(joint).enumerate() {
@@ -225,10 +210,7 @@ impl ContactIsolator {
             .max(UNEXPLAINED_THRESHOLDS * (self.threshold.len() as f64).sqrt());
         let grazing = hit.normal.dot(&force).abs() / force.norm();
         let point_std = wrench.point_std(&at) / grazing.max(f64::EPSILON);
-        let size = link
-            .surface
-            .as_ref()
-            .map_or(0.0, |surface| surface.bounding_sphere().1);
+        let size = link.surface.as_ref().map_or(0.0, |surface| surface.bounding_sphere().1);
 
         let pose = kinematics.link_pose(robot, hit.link);
         let mut contact = Contact::unlocated(hit.link);
@@ -287,10 +269,7 @@ impl ContactIsolator {
         let behind = self.bodies.links(&self.robot).next();
         behind.or_else(|| {
             let before = self.robot.chain(body).iter().rev();
-            before
-                .flat_map(|body| self.robot.links_of_body(*body))
-                .copied()
-                .next()
+            before.flat_map(|body| self.robot.links_of_body(*body)).copied().next()
         })
     }
 

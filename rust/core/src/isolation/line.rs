@@ -17,9 +17,7 @@ pub(super) struct LineCast {
 
 impl LineCast {
     pub fn new() -> Self {
-        Self {
-            hits: Vec::with_capacity(HITS_PER_LINK),
-        }
+        Self { hits: Vec::with_capacity(HITS_PER_LINK) }
     }
 
     /// Appends all hits of the whole line with a link, up to the capacity of `candidates`.
@@ -67,9 +65,6 @@ impl LineCast {
 /// Orders hits: those where the force enters first, each kind along the force.
 pub(super) fn best_first(candidates: &mut [Candidate]) {
     candidates.sort_unstable_by(|a, b| {
-        b.pushing
-            .cmp(&a.pushing)
-            .then(a.distance.total_cmp(&b.distance))
-            .then(a.link.cmp(&b.link))
+        b.pushing.cmp(&a.pushing).then(a.distance.total_cmp(&b.distance)).then(a.link.cmp(&b.link))
     });
 }

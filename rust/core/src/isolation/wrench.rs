@@ -36,11 +36,7 @@ pub(super) fn jacobian_column(
     column: usize,
     reference: &Vector3<f64>,
 ) -> Vector6<f64> {
-    let (linear, angular) = split(&motion_axis(
-        robot.bodies[body].kind,
-        &kinematics.bodies[body],
-        column,
-    ));
+    let (linear, angular) = split(&motion_axis(robot.bodies[body].kind, &kinematics.bodies[body], column));
     stack(&(linear + angular.cross(reference)), &angular)
 }
 
@@ -82,21 +78,14 @@ pub(super) fn estimate_wrench(
         root.row_mut(i).unscale_mut(LEVER);
     }
     let (force, moment) = split(&solution);
-    WrenchEstimate {
-        force,
-        moment: moment / LEVER,
-        reference,
-        rank,
-        root,
-    }
+    WrenchEstimate { force, moment: moment / LEVER, reference, rank, root }
 }
 
 /// The triangle of a QR factorisation in the upper rows, zeros below.
 fn triangle(rows: SMatrix<f64, BLOCK, 7>) -> SMatrix<f64, BLOCK, 7> {
     let upper = rows.qr().r();
     let mut out = SMatrix::<f64, BLOCK, 7>::zeros();
-    out.fixed_view_mut::<6, 7>(0, 0)
-        .copy_from(&upper.fixed_view::<6, 7>(0, 0));
+    out.fixed_view_mut::<6, 7>(0, 0).copy_from(&upper.fixed_view::<6, 7>(0, 0));
     out
 }
 
@@ -113,11 +102,7 @@ fn minimum_norm(factor: &Matrix6<f64>, rhs: &Vector6<f64>) -> (Vector6<f64>, Mat
         return (Vector6::zeros(), Matrix6::zeros(), 0);
     };
     let tolerance = RANK_TOLERANCE * svd.singular_values.max();
-    let rank = svd
-        .singular_values
-        .iter()
-        .filter(|value| **value > tolerance)
-        .count();
+    let rank = svd.singular_values.iter().filter(|value| **value > tolerance).count();
     match svd.pseudo_inverse(tolerance) {
         Ok(inverse) => (inverse * rhs, inverse, rank),
         Err(_) => (Vector6::zeros(), Matrix6::zeros(), rank),
@@ -147,8 +132,7 @@ impl WrenchEstimate {
         let across = self.force.cross_matrix() / self.force.norm_squared();
         let mut map = Matrix3x6::zeros();
         map.fixed_view_mut::<3, 3>(0, 0).copy_from(&(-(across * lever)));
-        map.fixed_view_mut::<3, 3>(0, 3)
-            .copy_from(&(across * Matrix3::identity()));
+        map.fixed_view_mut::<3, 3>(0, 3).copy_from(&(across * Matrix3::identity()));
         (map * self.root).norm()
     }
 }

@@ -21,11 +21,7 @@ impl BiasTracker {
                 "bias_time_constant: must be positive and finite [s], not {time_constant}"
             )));
         }
-        Ok(Self {
-            time_constant,
-            bias: vec![0.0; nv],
-            free_time: 0.0,
-        })
+        Ok(Self { time_constant, bias: vec![0.0; nv], free_time: 0.0 })
     }
 
     /// Whether the first average is complete: one time constant, taken as free of contact.
@@ -37,10 +33,7 @@ impl BiasTracker {
     pub fn follow(&mut self, torque: &[f64], dt: f64) {
         self.free_time += dt;
         let share = dt / self.free_time.min(self.time_constant).max(dt);
-        self.bias
-            .iter_mut()
-            .zip(torque)
-            .for_each(|(bias, torque)| *bias += share * (torque - *bias));
+        self.bias.iter_mut().zip(torque).for_each(|(bias, torque)| *bias += share * (torque - *bias));
     }
 
     /// The bias `(nv,)`.

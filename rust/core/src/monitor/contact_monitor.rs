@@ -65,15 +65,8 @@ impl ContactMonitor {
         let nv = robot.nv();
         Ok(Self {
             observer: MomentumObserver::new(robot.clone(), options.dt, &options.observer_gain)?,
-            bias: options
-                .bias_time_constant
-                .map(|constant| BiasTracker::new(nv, constant))
-                .transpose()?,
-            detector: Detector::new(
-                robot.clone(),
-                &options.isolation.torque_threshold,
-                options.hold_time,
-            )?,
+            bias: options.bias_time_constant.map(|constant| BiasTracker::new(nv, constant)).transpose()?,
+            detector: Detector::new(robot.clone(), &options.isolation.torque_threshold, options.hold_time)?,
             isolator: ContactIsolator::new(robot.clone(), &options.isolation)?,
             dt: options.dt,
             ticks: 0,
@@ -88,16 +81,14 @@ impl ContactMonitor {
     /// [`crate::Error::Input`] names the argument; the state is then unchanged.
     pub fn update(&mut self, q: &[f64], v: &[f64], tau: &[f64], friction: Option<&[f64]>) -> Result<()> {
         let first = self.ticks == 0;
-        self.external_torque
-            .copy_from_slice(self.observer.update(q, v, tau, friction, None)?);
+        self.external_torque.copy_from_slice(self.observer.update(q, v, tau, friction, None)?);
         self.ticks += 1;
         let ready = self.remove_bias(first);
         if ready {
             self.detector.update(&self.external_torque, self.dt);
         }
         if self.detector.collision() {
-            self.isolator
-                .isolate_at(self.observer.kinematics(), &self.external_torque);
+            self.isolator.isolate_at(self.observer.kinematics(), &self.external_torque);
         } else {
             self.isolator.clear();
         }
@@ -121,10 +112,7 @@ impl ContactMonitor {
         if !touched && !first {
             bias.follow(&self.external_torque, self.dt);
         }
-        self.external_torque
-            .iter_mut()
-            .zip(bias.bias())
-            .for_each(|(torque, bias)| *torque -= bias);
+        self.external_torque.iter_mut().zip(bias.bias()).for_each(|(torque, bias)| *torque -= bias);
         ready
     }
 
@@ -144,9 +132,7 @@ impl ContactMonitor {
         report.links.extend_from_slice(self.detector.links());
         report.external_torque.clone_from(&self.external_torque);
         report.acceleration.clear();
-        report
-            .acceleration
-            .extend_from_slice(self.observer.acceleration());
+        report.acceleration.extend_from_slice(self.observer.acceleration());
         report.isolation.clone_from(self.isolator.isolation());
     }
 

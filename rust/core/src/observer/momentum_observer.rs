@@ -115,26 +115,14 @@ impl MomentumObserver {
         std::mem::swap(&mut self.known_rate, &mut self.known_rate_before);
         self.kinematics.set_configuration(&self.robot, q);
         self.kinematics.set_velocity(&self.robot, v);
-        self.pass.evaluate(
-            &self.robot,
-            &self.kinematics,
-            v,
-            &mut self.momentum,
-            &mut self.known_rate,
-        );
+        self.pass.evaluate(&self.robot, &self.kinematics, v, &mut self.momentum, &mut self.known_rate);
         self.velocity.copy_from_slice(v);
         spread_torque(tau, &mut self.motor_torque);
         if let Some(friction) = friction {
             let missing = self.motor_torque.len() - friction.len();
-            self.motor_torque[missing..]
-                .iter_mut()
-                .zip(friction)
-                .for_each(|(tau, f)| *tau -= f);
+            self.motor_torque[missing..].iter_mut().zip(friction).for_each(|(tau, f)| *tau -= f);
         }
-        self.known_rate
-            .iter_mut()
-            .zip(&self.motor_torque)
-            .for_each(|(rate, tau)| *rate += tau);
+        self.known_rate.iter_mut().zip(&self.motor_torque).for_each(|(rate, tau)| *rate += tau);
         if self.started {
             self.integrate(dt);
         }
@@ -174,19 +162,8 @@ impl MomentumObserver {
     pub fn acceleration(&mut self) -> &[f64] {
         if !self.acceleration_is_current {
             let torques = self.motor_torque.iter().zip(&self.external_torque);
-            self.total_torque
-                .iter_mut()
-                .zip(torques)
-                .for_each(|(sum, (motor, ext))| *sum = motor + ext);
-            let Self {
-                robot,
-                forward,
-                kinematics,
-                velocity,
-                total_torque,
-                acceleration,
-                ..
-            } = self;
+            self.total_torque.iter_mut().zip(torques).for_each(|(sum, (motor, ext))| *sum = motor + ext);
+            let Self { robot, forward, kinematics, velocity, total_torque, acceleration, .. } = self;
             forward.evaluate(robot, kinematics, velocity, total_torque, acceleration);
             self.acceleration_is_current = true;
         }
@@ -208,8 +185,6 @@ pub(crate) fn check_time_step(dt: f64) -> Result<()> {
     if dt.is_finite() && dt > 0.0 {
         Ok(())
     } else {
-        Err(Error::Input(format!(
-            "dt: must be positive and finite [s], not {dt}"
-        )))
+        Err(Error::Input(format!("dt: must be positive and finite [s], not {dt}")))
     }
 }

@@ -30,10 +30,7 @@ fn wrong_length(argument: &str, found: usize, wanted: usize) -> Error {
 #[cold]
 fn not_finite(argument: &str, values: &[f64]) -> Error {
     let index = values.iter().position(|x| !x.is_finite()).unwrap_or(0);
-    Error::Input(format!(
-        "{argument}: entry {index} is {}; all entries must be finite",
-        values[index]
-    ))
+    Error::Input(format!("{argument}: entry {index} is {}; all entries must be finite", values[index]))
 }
 
 impl Robot {
@@ -96,15 +93,8 @@ impl Robot {
 #[cold]
 fn not_unit(kind: JointKind, index: usize, norm: f64) -> Error {
     let text = match kind {
-        JointKind::FreeFlyer => format!(
-            "entries {}..{} are a quaternion (x, y, z, w)",
-            index + 3,
-            index + 7
-        ),
-        _ => format!(
-            "entries {index}..{} are (cos, sin) of a continuous joint",
-            index + 2
-        ),
+        JointKind::FreeFlyer => format!("entries {}..{} are a quaternion (x, y, z, w)", index + 3, index + 7),
+        _ => format!("entries {index}..{} are (cos, sin) of a continuous joint", index + 2),
     };
     Error::Input(format!("q: {text} and must have norm 1, not {norm:.6}"))
 }

@@ -43,9 +43,7 @@ impl ForwardDynamics {
             excess: 0.0,
             acceleration: zero,
         };
-        Self {
-            bodies: vec![empty; robot.body_count()],
-        }
+        Self { bodies: vec![empty; robot.body_count()] }
     }
 
     /// Writes `M^-1 (tau - C v - g)` for the total torque `tau` `(nv,)`.
@@ -59,12 +57,7 @@ impl ForwardDynamics {
         tau: &[f64],
         acceleration: &mut [f64],
     ) {
-        for ((body, state), work) in robot
-            .bodies
-            .iter()
-            .zip(&kinematics.bodies)
-            .zip(&mut self.bodies)
-            .skip(1)
+        for ((body, state), work) in robot.bodies.iter().zip(&kinematics.bodies).zip(&mut self.bodies).skip(1)
         {
             let inertia = SpatialInertia::of(body, state);
             let (f, n) = inertia.apply(&state.linear, &state.angular);
@@ -117,9 +110,7 @@ impl ForwardDynamics {
                     }
                     lhs[(row, row)] += body.armature;
                 }
-                let solution = lhs
-                    .cholesky()
-                    .map_or_else(Vector6::zeros, |factor| factor.solve(&rhs));
+                let solution = lhs.cholesky().map_or_else(Vector6::zeros, |factor| factor.solve(&rhs));
                 work.acceleration = carried;
                 for row in 0..6 {
                     acceleration[body.idx_v + row] = solution[row];

@@ -21,19 +21,11 @@ impl SpatialInertia {
         let com = state.position + state.rotation * body.com;
         let about_com = state.rotation * body.inertia * state.rotation.transpose();
         let shift = Matrix3::from_diagonal_element(com.norm_squared()) - com * com.transpose();
-        Self {
-            mass: body.mass,
-            moment: com * body.mass,
-            rotational: about_com + shift * body.mass,
-        }
+        Self { mass: body.mass, moment: com * body.mass, rotational: about_com + shift * body.mass }
     }
 
     pub fn zero() -> Self {
-        Self {
-            mass: 0.0,
-            moment: Vector3::zeros(),
-            rotational: Matrix3::zeros(),
-        }
+        Self { mass: 0.0, moment: Vector3::zeros(), rotational: Matrix3::zeros() }
     }
 
     #[inline]
@@ -57,9 +49,7 @@ impl SpatialInertia {
     pub fn matrix(&self) -> Matrix6<f64> {
         let cross = self.moment.cross_matrix();
         let mut matrix = Matrix6::zeros();
-        matrix
-            .fixed_view_mut::<3, 3>(0, 0)
-            .copy_from(&Matrix3::from_diagonal_element(self.mass));
+        matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&Matrix3::from_diagonal_element(self.mass));
         matrix.fixed_view_mut::<3, 3>(0, 3).copy_from(&(-cross));
         matrix.fixed_view_mut::<3, 3>(3, 0).copy_from(&cross);
         matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.rotational);

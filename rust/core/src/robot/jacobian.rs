@@ -48,10 +48,7 @@ impl Robot {
     fn placed(&self, q: &[f64], link: usize) -> Result<(Kinematics, Pose)> {
         self.check_configuration(q)?;
         if link >= self.links.len() {
-            return Err(Error::Input(format!(
-                "link: index {link} of {}",
-                self.links.len()
-            )));
+            return Err(Error::Input(format!("link: index {link} of {}", self.links.len())));
         }
         let mut kinematics = Kinematics::new(self);
         kinematics.set_configuration(self, q);

@@ -54,18 +54,12 @@ impl Kinematics {
             linear: Vector3::zeros(),
             angular: Vector3::zeros(),
         };
-        Self {
-            origin: Vector3::zeros(),
-            bodies: vec![rest; robot.body_count()],
-        }
+        Self { origin: Vector3::zeros(), bodies: vec![rest; robot.body_count()] }
     }
 
     /// No bodies: a placeholder that costs no memory.
     pub(crate) fn empty() -> Self {
-        Self {
-            origin: Vector3::zeros(),
-            bodies: Vec::new(),
-        }
+        Self { origin: Vector3::zeros(), bodies: Vec::new() }
     }
 
     /// Poses at a checked configuration `q`.
@@ -113,11 +107,7 @@ impl Kinematics {
     #[inline]
     pub fn set_velocity(&mut self, robot: &Robot, v: &[f64]) {
         for (index, body) in robot.bodies.iter().enumerate().skip(1) {
-            let BodyState {
-                mut linear,
-                mut angular,
-                ..
-            } = self.bodies[body.parent];
+            let BodyState { mut linear, mut angular, .. } = self.bodies[body.parent];
             let state = &mut self.bodies[index];
             match body.kind {
                 JointKind::Revolute | JointKind::Continuous => {
@@ -141,10 +131,7 @@ impl Kinematics {
     pub fn link_pose(&self, robot: &Robot, link: usize) -> Pose {
         let link = &robot.links[link];
         let body = &self.bodies[link.body];
-        let pose = Pose {
-            rotation: body.rotation,
-            translation: body.position + self.origin,
-        };
+        let pose = Pose { rotation: body.rotation, translation: body.position + self.origin };
         pose.compose(&link.placement)
     }
 }
@@ -153,11 +140,7 @@ impl Kinematics {
 #[inline]
 fn turn_about_z(rotation: &Matrix3<f64>, cos: f64, sin: f64) -> Matrix3<f64> {
     let (x, y) = (rotation.column(0), rotation.column(1));
-    Matrix3::from_columns(&[
-        x * cos + y * sin,
-        y * cos - x * sin,
-        rotation.column(2).into_owned(),
-    ])
+    Matrix3::from_columns(&[x * cos + y * sin, y * cos - x * sin, rotation.column(2).into_owned()])
 }
 
 /// The rotation of a quaternion (x, y, z, w) of norm near 1.

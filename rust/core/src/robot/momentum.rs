@@ -29,15 +29,8 @@ impl MomentumPass {
     /// Space for a robot's bodies.
     pub fn new(robot: &Robot) -> Self {
         let zero = Vector3::zeros();
-        let empty = Composite {
-            linear: zero,
-            angular: zero,
-            mass: 0.0,
-            moment: zero,
-        };
-        Self {
-            composite: vec![empty; robot.body_count()],
-        }
+        let empty = Composite { linear: zero, angular: zero, mass: 0.0, moment: zero };
+        Self { composite: vec![empty; robot.body_count()] }
     }
 
     /// Writes `M v` and `C^T v - g` (Vorndamme 2017, eq. 5 with the sign turned), both `(nv,)`.
@@ -52,12 +45,8 @@ impl MomentumPass {
         momentum: &mut [f64],
         rate: &mut [f64],
     ) {
-        for ((body, state), composite) in robot
-            .bodies
-            .iter()
-            .zip(&kinematics.bodies)
-            .zip(&mut self.composite)
-            .skip(1)
+        for ((body, state), composite) in
+            robot.bodies.iter().zip(&kinematics.bodies).zip(&mut self.composite).skip(1)
         {
             let com = state.position + state.rotation * body.com;
             let linear = state.velocity_at(&com) * body.mass;
@@ -73,12 +62,7 @@ impl MomentumPass {
         for index in (1..robot.bodies.len()).rev() {
             let body = &robot.bodies[index];
             let state = &kinematics.bodies[index];
-            let Composite {
-                linear: f,
-                angular: n,
-                mass,
-                moment,
-            } = self.composite[index];
+            let Composite { linear: f, angular: n, mass, moment } = self.composite[index];
             let k = body.idx_v;
             match body.kind {
                 JointKind::Revolute | JointKind::Continuous => {
@@ -99,10 +83,7 @@ impl MomentumPass {
                     let (w, u) = (&state.angular, &state.linear);
                     let parts = [
                         (to_base(f), to_base(f.cross(w) + gravity * mass)),
-                        (
-                            to_base(n),
-                            to_base(f.cross(u) + n.cross(w) + moment.cross(&gravity)),
-                        ),
+                        (to_base(n), to_base(f.cross(u) + n.cross(w) + moment.cross(&gravity))),
                     ];
                     for (row, (p, r)) in parts.iter().enumerate() {
                         momentum[k + 3 * row..k + 3 * row + 3].copy_from_slice(p.as_slice());

@@ -34,20 +34,14 @@ pub(crate) fn stack(linear: &Vector3<f64>, angular: &Vector3<f64>) -> Vector6<f6
 /// The halves of a spatial vector.
 #[inline]
 pub(crate) fn split(vector: &Vector6<f64>) -> (Vector3<f64>, Vector3<f64>) {
-    (
-        Vector3::new(vector[0], vector[1], vector[2]),
-        Vector3::new(vector[3], vector[4], vector[5]),
-    )
+    (Vector3::new(vector[0], vector[1], vector[2]), Vector3::new(vector[3], vector[4], vector[5]))
 }
 
 /// Rate of a motion vector fixed in a body that moves: `V x motion`.
 #[inline]
 pub(crate) fn cross_motion(state: &BodyState, motion: &Vector6<f64>) -> Vector6<f64> {
     let (linear, angular) = split(motion);
-    stack(
-        &(state.angular.cross(&linear) + state.linear.cross(&angular)),
-        &state.angular.cross(&angular),
-    )
+    stack(&(state.angular.cross(&linear) + state.linear.cross(&angular)), &state.angular.cross(&angular))
 }
 
 /// Rate of a force vector fixed in a body that moves: `V x* force`.
@@ -57,8 +51,5 @@ pub(crate) fn cross_force(
     force: &Vector3<f64>,
     moment: &Vector3<f64>,
 ) -> (Vector3<f64>, Vector3<f64>) {
-    (
-        state.angular.cross(force),
-        state.angular.cross(moment) + state.linear.cross(force),
-    )
+    (state.angular.cross(force), state.angular.cross(moment) + state.linear.cross(force))
 }

@@ -60,31 +60,15 @@ pub struct Robot {
 fn check_joint(joint: &JointDescription, number: usize) -> Result<()> {
     let name = &joint.name;
     if joint.parent >= number {
-        return Err(Error::Model(format!(
-            "joint '{name}': its parent must come before it"
-        )));
+        return Err(Error::Model(format!("joint '{name}': its parent must come before it")));
     }
-    let finite = joint
-        .placement
-        .rotation
-        .iter()
-        .chain(joint.placement.translation.iter());
-    let finite = finite
-        .chain(joint.com.iter())
-        .chain(joint.inertia.iter())
-        .chain(joint.axis.iter());
-    if !finite
-        .chain([&joint.mass, &joint.armature])
-        .all(|x| x.is_finite())
-    {
-        return Err(Error::Model(format!(
-            "joint '{name}': placement, axis and inertia must be finite"
-        )));
+    let finite = joint.placement.rotation.iter().chain(joint.placement.translation.iter());
+    let finite = finite.chain(joint.com.iter()).chain(joint.inertia.iter()).chain(joint.axis.iter());
+    if !finite.chain([&joint.mass, &joint.armature]).all(|x| x.is_finite()) {
+        return Err(Error::Model(format!("joint '{name}': placement, axis and inertia must be finite")));
     }
     if joint.mass < 0.0 || joint.armature < 0.0 {
-        return Err(Error::Model(format!(
-            "joint '{name}': mass and armature must not be negative"
-        )));
+        return Err(Error::Model(format!("joint '{name}': mass and armature must not be negative")));
     }
     if joint.kind == JointKind::FreeFlyer && number != 1 {
         return Err(Error::Model(format!(
@@ -104,11 +88,7 @@ fn axis_frame(joint: &JointDescription) -> Matrix3<f64> {
         return Matrix3::identity();
     }
     let z = joint.axis.normalize();
-    let apart = if z.x.abs() < 0.8 {
-        Vector3::x()
-    } else {
-        Vector3::y()
-    };
+    let apart = if z.x.abs() < 0.8 { Vector3::x() } else { Vector3::y() };
     let y = z.cross(&apart).normalize();
     Matrix3::from_columns(&[y.cross(&z), y, z])
 }
@@ -119,13 +99,7 @@ impl Robot {
     /// # Errors
     /// [`Error::Model`] for joints and links that cannot be used, [`Error::Geometry`] for surfaces.
     pub fn new(description: RobotDescription) -> Result<Robot> {
-        let RobotDescription {
-            name,
-            joints,
-            links,
-            gravity,
-            mut warnings,
-        } = description;
+        let RobotDescription { name, joints, links, gravity, mut warnings } = description;
         if !gravity.iter().all(|x| x.is_finite()) {
             return Err(Error::Model("gravity must be three finite numbers".into()));
         }
@@ -165,10 +139,7 @@ impl Robot {
         let mut frozen = Vec::with_capacity(links.len());
         for (index, link) in links.into_iter().enumerate() {
             if link.joint >= bodies.len() {
-                return Err(Error::Model(format!(
-                    "link '{}': its joint does not exist",
-                    link.name
-                )));
+                return Err(Error::Model(format!("link '{}': its joint does not exist", link.name)));
             }
             if link_index.insert(link.name.clone(), index).is_some() {
                 return Err(Error::Model(format!("two links are named '{}'", link.name)));
@@ -183,20 +154,12 @@ impl Robot {
             } else {
                 let (surface, odd) =
                     Surface::new(link.geometry).map_err(|error| in_link(&link.name, error))?;
-                warnings.extend(
-                    odd.into_iter()
-                        .map(|text| format!("link '{}': {text}", link.name)),
-                );
+                warnings.extend(odd.into_iter().map(|text| format!("link '{}': {text}", link.name)));
                 touchable.push(index);
                 body_links[link.joint].push(index);
                 Some(surface)
             };
-            frozen.push(Link {
-                name: link.name,
-                body: link.joint,
-                placement,
-                surface,
-            });
+            frozen.push(Link { name: link.name, body: link.joint, placement, surface });
         }
         Ok(Robot {
             name,
@@ -240,9 +203,7 @@ impl Robot {
 
     /// Whether the base is free to move.
     pub fn floating_base(&self) -> bool {
-        self.bodies
-            .get(1)
-            .is_some_and(|body| body.kind == JointKind::FreeFlyer)
+        self.bodies.get(1).is_some_and(|body| body.kind == JointKind::FreeFlyer)
     }
 
     /// Joint names; joint k (from 0) moves body k + 1.
@@ -298,10 +259,7 @@ impl Robot {
     pub fn link(&self, name: &str) -> Result<usize> {
         self.link_index.get(name).copied().ok_or_else(|| {
             let names: Vec<&str> = self.links.iter().map(|link| link.name.as_str()).collect();
-            Error::Input(format!(
-                "link: there is no '{name}'; the links are {}",
-                names.join(", ")
-            ))
+            Error::Input(format!("link: there is no '{name}'; the links are {}", names.join(", ")))
         })
     }
 }

@@ -1,1 +1,181 @@
-//! A link's surface.
+//! A link's surface: closest points, all hits of a line, samples uniform by area.
+//!
+//! A surface is the union of parts. Meshes are repaired when the surface is made and searched through a tree;
+//! boxes, cylinders, spheres and capsules are exact. Everything is in the link's frame, in metres, and immutable.
+
+mod build;
+mod closest;
+mod components;
+mod load;
+mod mesh;
+mod part;
+mod primitive;
+mod rays;
+mod repair;
+mod sample;
+mod slivers;
+mod tree;
+mod triangle;
+mod union;
+mod weld;
+mod winding;
+
+#[cfg(test)]
+mod tests;
+
+pub use load::load_mesh;
+pub use part::{Geometry, Part};
+
+use nalgebra::Vector3;
+
+use crate::Result;
+use part::Solid;
+use sample::Sampler;
+
+/// The point of a surface nearest to a query.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClosestPoint {
+    /// The nearest point [m].
+    pub point: Vector3<f64>,
+    /// Outward unit normal of the face that holds `point`; on an edge, of one of its faces.
+    pub normal: Vector3<f64>,
+    /// Euclidean distance from the query, never negative [m].
+    pub distance: f64,
+    /// Index into [`Surface::triangles`]; -1 on an exact primitive.
+    pub triangle: i64,
+}
+
+/// One crossing of a line with a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RayHit {
+    /// Where along the line, from its origin [m]; negative behind it.
+    pub distance: f64,
+    /// `origin + distance * direction` [m].
+    pub point: Vector3<f64>,
+    /// Outward unit normal.
+    pub normal: Vector3<f64>,
+    /// Index into [`Surface::triangles`]; -1 on an exact primitive.
+    pub triangle: i64,
+    /// Index of the part that was hit.
+    pub part: u32,
+    /// The line goes into the part here; otherwise it comes out.
+    pub entering: bool,
+    hidden: bool,
+}
+
+/// One sample of a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfacePoint {
+    /// The sampled point [m].
+    pub point: Vector3<f64>,
+    /// Outward unit normal.
+    pub normal: Vector3<f64>,
+    /// Index into [`Surface::triangles`]; -1 on an exact primitive.
+    pub triangle: i64,
+}
+
+/// The surface of one link.
+#[derive(Debug, Clone)]
+pub struct Surface {
+    solids: Vec<Solid>,
+    vertices: Vec<[f64; 3]>,
+    triangles: Vec<[u32; 3]>,
+    sampler: Sampler,
+    center: Vector3<f64>,
+    radius: f64,
+}
+
+impl Surface {
+    /// Makes the surface of the given parts, and says in sentences what was odd about them and what was done.
+    ///
+    /// Meshes are repaired: duplicate vertices merged, degenerate and duplicate triangles removed, winding made
+    /// consistent and outward.
+    ///
+    /// # Errors
+    /// [`Error::Geometry`](crate::Error::Geometry) if there are no parts, a number is not finite, a size is not
+    /// positive, a mesh is empty, has an index out of range, or has nothing left after the repair.
+    pub fn new(parts: Vec<Part>) -> Result<(Surface, Vec<String>)> {
+        build::surface(parts)
+    }
+
+    /// Vertices of all parts [m]; those of a primitive belong to a tessellation for display.
+    pub fn vertices(&self) -> &[[f64; 3]] {
+        &self.vertices
+    }
+
+    /// Triangles of all parts, counter-clockwise seen from outside.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Sum of the parts' areas, exact for primitives [m^2]. Where parts overlap, both count.
+    pub fn area(&self) -> f64 {
+        self.sampler.area()
+    }
+
+    /// Whether every part is closed: each edge of a mesh is used as often in one direction as in the other.
+    pub fn watertight(&self) -> bool {
+        self.solids.iter().all(Solid::closed)
+    }
+
+    /// Centre and radius of a sphere around all parts [m].
+    pub fn bounding_sphere(&self) -> (Vector3<f64>, f64) {
+        (self.center, self.radius)
+    }
+
+    /// The nearest point of the surface, the minimum over the parts.
+    ///
+    /// Where parts overlap it can lie inside another part. A query that is not finite gives a distance of NaN.
+    pub fn closest_point(&self, p: &Vector3<f64>) -> ClosestPoint {
+        self.nearest(p, None)
+    }
+
+    /// As [`closest_point`](Self::closest_point), faster if `triangle` (of an earlier answer) is near the query.
+    ///
+    /// An index that names no mesh triangle, such as -1, only loses the gain.
+    pub fn closest_point_from(&self, p: &Vector3<f64>, triangle: i64) -> ClosestPoint {
+        self.nearest(p, Some(triangle))
+    }
+
+    fn nearest(&self, p: &Vector3<f64>, warm_start: Option<i64>) -> ClosestPoint {
+        let mut best = ClosestPoint {
+            point: Vector3::repeat(f64::NAN),
+            normal: Vector3::z(),
+            distance: f64::INFINITY,
+            triangle: -1,
+        };
+        for solid in &self.solids {
+            solid.closest_point(p, warm_start, &mut best);
+        }
+        if !best.point.x.is_finite() {
+            best.distance = f64::NAN;
+        }
+        best
+    }
+
+    /// Appends every crossing of a line with the surface to `hits`, nearest first; returns whether all fitted.
+    ///
+    /// `direction` is a unit vector; crossings before `t_min` [m] are left out (minus infinity: a full line). Hits
+    /// inside another closed part are left out too, so that those of closed parts come in pairs in and out.
+    ///
+    /// Never allocates: at the capacity of `hits` it stops and returns `false`. Capacity is needed for the hits of
+    /// all parts, before those inside others are dropped. A line that is not finite, or without direction, hits
+    /// nothing.
+    pub fn cast_line_into(
+        &self,
+        origin: &Vector3<f64>,
+        direction: &Vector3<f64>,
+        t_min: f64,
+        hits: &mut Vec<RayHit>,
+    ) -> bool {
+        rays::cast(&self.solids, (&self.center, self.radius), origin, direction, t_min, hits)
+    }
+
+    /// `n` points, uniform by area over what is exposed: points strictly inside another closed part, or on a face
+    /// that another part covers, are not taken. The same seed gives the same points, and a larger `n` appends.
+    ///
+    /// Gives fewer than `n` only if less than about a thousandth of the area is exposed.
+    pub fn sample(&self, n: usize, seed: u64) -> Vec<SurfacePoint> {
+        self.sampler.sample(&self.solids, n, seed)
+    }
+}

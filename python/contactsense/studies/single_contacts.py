@@ -1,0 +1,163 @@
+"""Single contacts with ideal measurements: what the torques determine, and how exactly (Vorndamme 2017, VI-B)."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import ContactIsolator, InputError, Robot
+
+FloatArray = NDArray[np.float64]
+
+TOLERANCE = 1e-9  # [m], and relative for the force
+RANK_TOLERANCE = 1e-7  # of the largest singular value
+CONE = np.deg2rad(30.0)
+TRIES = 300
+POINTS_PER_POSE = 10
+
+
+@dataclass(frozen=True)
+class Touch:
+    """A true contact, world frame."""
+
+    link: str
+    q: FloatArray
+    point: FloatArray  # [m]
+    force: FloatArray  # [N]
+
+
+@dataclass(frozen=True)
+class LinkResult:
+    """Counts of one link's contacts by outcome, and the worst errors of those located."""
+
+    link: str
+    outcomes: Counter[str]
+    point_error: float  # [m]
+    force_error: float  # relative
+
+
+def random_configuration(robot: Robot, rng: np.random.Generator) -> FloatArray:
+    """A pose with every joint turned by up to half a turn, or moved by up to 0.1 m; the base anywhere."""
+    q = robot.neutral()
+    step = rng.uniform(-1.0, 1.0, robot.nv)
+    return integrate(robot, q, step * (np.pi / 2))
+
+
+def integrate(robot: Robot, q: FloatArray, step: FloatArray) -> FloatArray:
+    """`q` moved by `step` `(nv,)`, joint by joint; the base's orientation by its rotation vector."""
+    q, position = q.copy(), 0
+    index = 0
+    if robot.floating_base:
+        q[:3] += step[:3]
+        angle = float(np.linalg.norm(step[3:6]))
+        axis = step[3:6] / max(angle, 1e-12)
+        q[3:7] = [*(np.sin(angle / 2) * axis), np.cos(angle / 2)]
+        position, index = 7, 6
+    for kind in robot.joint_kinds[int(robot.floating_base) :]:
+        if kind == "continuous":
+            angle = float(np.arctan2(q[position + 1], q[position])) + step[index]
+            q[position : position + 2] = np.cos(angle), np.sin(angle)
+            position += 2
+        else:
+            q[position] += step[index] * (0.05 if kind == "prismatic" else 1.0)
+            position += 1
+        index += 1
+    return q
+
+
+def touches(robot: Robot, link: str, count: int, rng: np.random.Generator) -> Iterator[Touch]:
+    """Random touches of a link, their lines of action free of all surfaces before the contact.
+
+    Fewer than `count` where the link can hardly be reached. A new pose after every few.
+    """
+    surface = robot.surface(link)
+    found = 0
+    for _ in range(TRIES):
+        q = random_configuration(robot, rng)
+        samples = surface.sample(POINTS_PER_POSE, seed=int(rng.integers(2**63)))
+        pose = robot.link_pose(q, link)
+        points = samples.points @ pose[:3, :3].T + pose[:3, 3]
+        directions = np.array([_tilt(-n, rng) for n in samples.normals @ pose[:3, :3].T])
+        free = ~blocked(robot, q, points, directions)
+        for point, direction in zip(points[free], directions[free], strict=True):
+            yield Touch(link, q, point, direction * rng.uniform(1.0, 50.0))
+            found += 1
+            if found == count:
+                return
+
+
+def blocked(robot: Robot, q: FloatArray, points: FloatArray, directions: FloatArray) -> NDArray[np.bool_]:
+    """Whether the lines meet a surface before the points, coming along `directions`."""
+    hit = np.zeros(len(points), dtype=bool)
+    for name in robot.link_names:
+        pose = robot.link_pose(q, name)
+        local = (points - pose[:3, 3]) @ pose[:3, :3]
+        back = -directions @ pose[:3, :3]
+        hits = robot.surface(name).cast_rays(local, back)
+        hit[hits.ray[hits.distance > 1e-7]] = True
+    return hit
+
+
+def _tilt(direction: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """A direction uniform in the cone of 30 degrees about `direction`."""
+    cos = rng.uniform(np.cos(CONE), 1.0)
+    turn = rng.uniform(0.0, 2 * np.pi)
+    other = np.cross(direction, [1.0, 0, 0] if abs(direction[0]) < 0.8 else [0, 1.0, 0])
+    other /= np.linalg.norm(other)
+    across = np.cos(turn) * other + np.sin(turn) * np.cross(direction, other)
+    tilted: FloatArray = cos * direction + np.sqrt(1 - cos * cos) * across
+    return tilted
+
+
+def judge(robot: Robot, isolator: ContactIsolator, touch: Touch, threshold: float) -> tuple[str, float, float]:
+    """Outcome of one touch, and the errors of point [m] and force (relative; NaN where not located)."""
+    jacobian = robot.jacobian(touch.q, touch.link, touch.point)
+    tau_ext = jacobian[:3].T @ touch.force
+    columns = np.flatnonzero(np.any(jacobian != 0.0, axis=0))
+    determined = np.linalg.matrix_rank(jacobian[:, columns] * _BALANCE, tol=None, rtol=RANK_TOLERANCE) == 6 if columns.size else False
+    own_joint_feels = columns.size > 0 and abs(tau_ext[columns[-1]]) > threshold
+    contacts = isolator.isolate(touch.q, tau_ext).contacts
+    if not contacts:
+        return ("not felt by any joint", np.nan, np.nan)
+    contact = contacts[0]
+    if contact.located:
+        point_error = float(np.linalg.norm(contact.point - touch.point))
+        force_error = float(np.linalg.norm(contact.force - touch.force) / np.linalg.norm(touch.force))
+        if point_error > TOLERANCE or force_error > TOLERANCE or contact.link != touch.link:
+            return ("WRONG, said to be located", point_error, force_error)
+        return ("located", point_error, force_error)
+    if determined and own_joint_feels:
+        return ("MISSED, though determined", np.nan, np.nan)
+    named = "link named" if contact.link == touch.link else "another link named"
+    why = "own joint feels it" if own_joint_feels else "own joint does not feel it"
+    rank = "" if determined else ", rank below 6"
+    return (f"{named}; {why}{rank}", np.nan, np.nan)
+
+
+_BALANCE = np.array([[1.0]] * 3 + [[1.0 / 0.3]] * 3)
+
+
+def run(robot: Robot, points: int = 100, seed: int = 0, threshold: float = 1e-3) -> list[LinkResult]:
+    """Judges `points` random touches of every link (those on the fixed base too: no joint feels them).
+
+    Raises:
+        InputError: `points` is not positive.
+    """
+    if points < 1:
+        raise InputError(f"points: must be at least 1, not {points}")
+    isolator = ContactIsolator(robot, torque_threshold=threshold)
+    results = []
+    for index, link in enumerate(robot.link_names):
+        rng = np.random.default_rng([seed, index])
+        judged = [judge(robot, isolator, touch, threshold) for touch in touches(robot, link, points, rng)]
+        outcomes = Counter(outcome for outcome, _, _ in judged)
+        if len(judged) < points:
+            outcomes["not reachable along a free line"] = points - len(judged)
+        errors = np.array([(p, f) for _, p, f in judged if not np.isnan(p)]).reshape(-1, 2)
+        worst = errors.max(axis=0, initial=0.0)
+        results.append(LinkResult(link, outcomes, float(worst[0]), float(worst[1])))
+    return results

@@ -1,0 +1,140 @@
+//! The parts of a link's surface, as given and as searched.
+
+use nalgebra::Vector3;
+
+use super::mesh::Mesh;
+use super::primitive::{Placed, Primitive};
+use super::ClosestPoint;
+use crate::spatial::Pose;
+use crate::{Error, Result};
+
+/// A shape in its own frame [m].
+#[derive(Debug, Clone, PartialEq)]
+pub enum Geometry {
+    /// Triangles, counter-clockwise seen from outside (repaired where they are not).
+    Mesh {
+        /// Vertices [m].
+        vertices: Vec<[f64; 3]>,
+        /// Indices into `vertices`.
+        triangles: Vec<[u32; 3]>,
+    },
+    /// An axis-aligned box around the origin.
+    Box {
+        /// Half the lengths of the edges [m].
+        half_extents: [f64; 3],
+    },
+    /// A cylinder around the z axis, centred.
+    Cylinder {
+        /// Radius [m].
+        radius: f64,
+        /// Half the length [m].
+        half_length: f64,
+    },
+    /// A sphere around the origin.
+    Sphere {
+        /// Radius [m].
+        radius: f64,
+    },
+    /// A cylinder around the z axis, centred, with half spheres on its ends.
+    Capsule {
+        /// Radius [m].
+        radius: f64,
+        /// Half the length of the cylinder, without the half spheres [m].
+        half_length: f64,
+    },
+}
+
+/// A shape placed on a link.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// The shape.
+    pub geometry: Geometry,
+    /// Its frame in the link's frame.
+    pub pose: Pose,
+}
+
+/// A part ready to be searched.
+#[derive(Debug, Clone)]
+#[allow(clippy::large_enum_variant)] // a handful per link
+pub(super) enum Solid {
+    /// In the link's frame; its triangles start at `first` in the surface's.
+    Mesh { mesh: Mesh, first: usize },
+    /// In its own frame.
+    Exact(Placed),
+}
+
+impl Solid {
+    pub fn closed(&self) -> bool {
+        match self {
+            Solid::Mesh { mesh, .. } => mesh.closed,
+            Solid::Exact(_) => true,
+        }
+    }
+
+    /// Replaces `best` if this part is nearer.
+    pub fn closest_point(&self, p: &Vector3<f64>, warm_start: Option<i64>, best: &mut ClosestPoint) {
+        match self {
+            Solid::Mesh { mesh, first } => {
+                let hint = warm_start
+                    .and_then(|t| usize::try_from(t).ok())
+                    .and_then(|t| t.checked_sub(*first))
+                    .filter(|&t| t < mesh.triangles.len());
+                mesh.closest_point(p, hint, *first, best);
+            }
+            Solid::Exact(placed) => placed.closest_point(p, best),
+        }
+    }
+
+    /// Whether `p` lies inside this part (closed), by more than `tolerance`.
+    pub fn contains(&self, p: &Vector3<f64>, tolerance: f64) -> bool {
+        match self {
+            Solid::Mesh { mesh, .. } => mesh.closed && mesh.contains(p, tolerance),
+            Solid::Exact(placed) => placed.contains(p, tolerance),
+        }
+    }
+}
+
+/// Checks a primitive's sizes.
+pub(super) fn primitive(geometry: &Geometry) -> Result<Primitive> {
+    let positive = |kind: &str, name: &str, value: f64| {
+        if value.is_finite() && value > 0.0 {
+            Ok(value)
+        } else {
+            Err(Error::Geometry(format!("{kind}: {name} is {value}; it must be positive and finite")))
+        }
+    };
+    Ok(match *geometry {
+        Geometry::Box { half_extents } => {
+            for value in half_extents {
+                positive("box", "half_extents", value)?;
+            }
+            Primitive::Box(half_extents.into())
+        }
+        Geometry::Cylinder { radius, half_length } => Primitive::Cylinder {
+            radius: positive("cylinder", "radius", radius)?,
+            half_length: positive("cylinder", "half_length", half_length)?,
+        },
+        Geometry::Sphere { radius } => Primitive::Sphere { radius: positive("sphere", "radius", radius)? },
+        Geometry::Capsule { radius, half_length } => Primitive::Capsule {
+            radius: positive("capsule", "radius", radius)?,
+            half_length: positive("capsule", "half_length", half_length)?,
+        },
+        Geometry::Mesh { .. } => return Err(Error::Geometry("a mesh is no primitive".into())),
+    })
+}
+
+/// Checks that a pose is finite and its rotation a rotation.
+pub(super) fn check_pose(pose: &Pose) -> Result<()> {
+    let r = &pose.rotation;
+    if !r.iter().chain(pose.translation.iter()).all(|x| x.is_finite()) {
+        return Err(Error::Geometry("a part's pose has numbers that are not finite".into()));
+    }
+    let off = (r.transpose() * r - nalgebra::Matrix3::identity()).abs().max();
+    if off > 1e-6 || r.determinant() < 0.0 {
+        return Err(Error::Geometry(format!(
+            "a part's pose has a rotation that is not orthonormal and right-handed (off by {off:.1e}); mirror or \
+             scale the geometry instead"
+        )));
+    }
+    Ok(())
+}

@@ -1,0 +1,103 @@
+//! Repair of meshes as found in the wild.
+
+use nalgebra::Vector3;
+
+use super::{components, slivers, weld, winding};
+use crate::{Error, Result};
+
+/// Vertices nearer than this share of the mesh's size are one.
+const SAME: f64 = 1e-9;
+
+pub(super) struct Repaired {
+    pub vertices: Vec<Vector3<f64>>,
+    pub triangles: Vec<[u32; 3]>,
+    pub closed: bool,
+}
+
+/// Merges vertices, removes degenerate and duplicate triangles, and turns windings outward; says what was done.
+pub(super) fn repair(
+    vertices: Vec<Vector3<f64>>,
+    mut triangles: Vec<[u32; 3]>,
+    remarks: &mut Vec<String>,
+) -> Result<Repaired> {
+    let mut used = vec![false; vertices.len()];
+    triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+    let referenced = || vertices.iter().zip(&used).filter(|(_, used)| **used).map(|(v, _)| v);
+    let low = referenced().fold(Vector3::repeat(f64::INFINITY), |a, v| a.inf(v));
+    let high = referenced().fold(Vector3::repeat(f64::NEG_INFINITY), |a, v| a.sup(v));
+    let tolerance = SAME * (high - low).norm();
+
+    let loose = used.iter().filter(|used| !**used).count();
+    say(remarks, loose, "vertex in no triangle dropped", "vertices in no triangle dropped");
+    let (vertices, index) = compact(vertices, &used, &mut triangles).weld(tolerance);
+    triangles.iter_mut().for_each(|t| *t = t.map(|v| index[v as usize]));
+    let merged = index.len() - vertices.len();
+    say(remarks, merged, "duplicate vertex merged", "duplicate vertices merged");
+
+    let flat = slivers::remove(&vertices, &mut triangles, tolerance);
+    say(remarks, flat, "degenerate triangle removed", "degenerate triangles removed");
+    let double = components::remove_duplicates(&mut triangles);
+    say(remarks, double, "duplicate triangle removed", "duplicate triangles removed");
+    if triangles.is_empty() {
+        return Err(Error::Geometry(
+            "mesh: nothing is left once degenerate and duplicate triangles are removed".into(),
+        ));
+    }
+
+    let outcome = winding::orient(&vertices, &mut triangles);
+    say(
+        remarks,
+        outcome.turned,
+        "triangle turned to agree with its neighbours",
+        "triangles turned to agree with their neighbours",
+    );
+    say(
+        remarks,
+        outcome.flipped,
+        "component had inward normals: turned outward",
+        "components had inward normals: turned outward",
+    );
+    say(
+        remarks,
+        outcome.one_sided,
+        "edge where no winding agrees: one-sided",
+        "edges where no winding agrees: one-sided",
+    );
+    let closed = winding::balanced(&triangles);
+    if !closed {
+        remarks.push("the mesh is open: a line can go in without coming out".into());
+    }
+    let mut used = vec![false; vertices.len()];
+    triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+    let vertices = compact(vertices, &used, &mut triangles).0;
+    Ok(Repaired { vertices, triangles, closed })
+}
+
+fn say(remarks: &mut Vec<String>, count: usize, one: &str, many: &str) {
+    if count > 0 {
+        remarks.push(format!("{count} {}", if count == 1 { one } else { many }));
+    }
+}
+
+struct Compact(Vec<Vector3<f64>>);
+
+impl Compact {
+    fn weld(&self, tolerance: f64) -> (Vec<Vector3<f64>>, Vec<u32>) {
+        weld::weld(&self.0, tolerance)
+    }
+}
+
+/// Drops unused vertices and renumbers the triangles.
+fn compact(vertices: Vec<Vector3<f64>>, used: &[bool], triangles: &mut [[u32; 3]]) -> Compact {
+    let mut next = 0;
+    let index: Vec<u32> = used
+        .iter()
+        .map(|&used| {
+            let own = next;
+            next += u32::from(used);
+            own
+        })
+        .collect();
+    triangles.iter_mut().for_each(|t| *t = t.map(|v| index[v as usize]));
+    Compact(vertices.into_iter().zip(used).filter(|(_, used)| **used).map(|(v, _)| v).collect())
+}

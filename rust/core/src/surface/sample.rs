@@ -1,0 +1,128 @@
+//! Points uniform by area over the exposed surface.
+
+use nalgebra::Vector3;
+
+use super::mesh::Mesh;
+use super::part::Solid;
+use super::primitive::Placed;
+use super::{ClosestPoint, SurfacePoint};
+
+/// Attempts per point asked for, before giving up on a surface that is almost all hidden.
+const ATTEMPTS: u64 = 1000;
+
+/// Tables of cumulative areas.
+#[derive(Debug, Clone)]
+pub(super) struct Sampler {
+    /// Of the parts.
+    parts: Vec<f64>,
+    /// Of each mesh part's triangles; empty for primitives.
+    triangles: Vec<Vec<f64>>,
+    /// Nearer than this is on a face, not inside [m].
+    tolerance: f64,
+}
+
+impl Sampler {
+    pub fn new(solids: &[Solid], size: f64) -> Self {
+        let triangles: Vec<Vec<f64>> = solids
+            .iter()
+            .map(|solid| match solid {
+                Solid::Mesh { mesh, .. } => cumulate((0..mesh.triangles.len()).map(|id| area(mesh, id))),
+                Solid::Exact(_) => Vec::new(),
+            })
+            .collect();
+        let parts = cumulate(solids.iter().zip(&triangles).map(|(solid, triangles)| match solid {
+            Solid::Mesh { .. } => triangles.last().copied().unwrap_or(0.0),
+            Solid::Exact(Placed { shape, .. }) => shape.area(),
+        }));
+        Sampler { parts, triangles, tolerance: 1e-9 * size }
+    }
+
+    pub fn area(&self) -> f64 {
+        self.parts.last().copied().unwrap_or(0.0)
+    }
+
+    pub fn sample(&self, solids: &[Solid], n: usize, seed: u64) -> Vec<SurfacePoint> {
+        let mut points = Vec::with_capacity(n);
+        let mut attempt = 0u64;
+        while points.len() < n && attempt < ATTEMPTS.saturating_mul(n as u64 + 10) {
+            let u = [0, 1, 2, 3].map(|k| uniform(seed, attempt * 4 + k));
+            attempt += 1;
+            let part = pick(&self.parts, u[0]);
+            let point = match &solids[part] {
+                Solid::Mesh { mesh, first } => {
+                    let id = pick(&self.triangles[part], u[1]);
+                    on_triangle(mesh, *first, id, u[2], u[3])
+                }
+                Solid::Exact(placed) => placed.sample([u[1], u[2], u[3]]),
+            };
+            if solids.len() == 1 || self.exposed(solids, part, &point) {
+                points.push(point);
+            }
+        }
+        points
+    }
+
+    fn exposed(&self, solids: &[Solid], part: usize, sample: &SurfacePoint) -> bool {
+        solids.iter().enumerate().all(|(other, solid)| {
+            if other == part || !solid.closed() {
+                return true;
+            }
+            let mut nearest = ClosestPoint {
+                point: sample.point,
+                normal: Vector3::zeros(),
+                distance: f64::INFINITY,
+                triangle: -1,
+            };
+            solid.closest_point(&sample.point, None, &mut nearest);
+            if nearest.distance > self.tolerance {
+                return !solid.contains(&sample.point, self.tolerance);
+            }
+            // On a face of both: hidden if the faces look at each other; if they coincide the first part counts.
+            let facing = nearest.normal.dot(&sample.normal);
+            facing > -0.999 && (facing < 0.999 || part < other)
+        })
+    }
+}
+
+fn cumulate(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    values
+        .scan(0.0, |sum, value| {
+            *sum += value;
+            Some(*sum)
+        })
+        .collect()
+}
+
+/// Index drawn in proportion to the steps of `cumulative`.
+fn pick(cumulative: &[f64], u: f64) -> usize {
+    let at = u * cumulative.last().copied().unwrap_or(0.0);
+    cumulative.partition_point(|&sum| sum <= at).min(cumulative.len().saturating_sub(1))
+}
+
+fn area(mesh: &Mesh, id: usize) -> f64 {
+    let [a, b, c] = mesh.triangles[id].map(|v| mesh.vertices[v as usize]);
+    0.5 * (b - a).cross(&(c - a)).norm()
+}
+
+fn on_triangle(mesh: &Mesh, first: usize, id: usize, u: f64, v: f64) -> SurfacePoint {
+    let [a, b, c] = mesh.triangles[id].map(|v| mesh.vertices[v as usize]);
+    let root = u.sqrt();
+    SurfacePoint {
+        point: a + ((b - a) * (1.0 - v) + (c - a) * v) * root,
+        normal: mesh.normals[id],
+        triangle: (first + id) as i64,
+    }
+}
+
+/// Uniform in [0, 1): the `counter`-th number of the stream `seed` (SplitMix64; Steele, Lea and Flood 2014).
+fn uniform(seed: u64, counter: u64) -> f64 {
+    let start = mix(seed.wrapping_add(0x9e37_79b9_7f4a_7c15));
+    let z = mix(start.wrapping_add(counter.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15)));
+    (z >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+}
+
+fn mix(mut z: u64) -> u64 {
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}

@@ -1,0 +1,4 @@
+//! Tests of the surface as a whole.
+
+mod meshes;
+mod watertight;
