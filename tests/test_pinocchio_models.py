@@ -5,7 +5,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 from robot_files import PACKAGE_DIRS, ROBOTS
-from urdf_text import ARM, joint, link, robot
+from urdf_text import ARM, joint, link, robot, shape
 
 from contactsense._models import describe_pinocchio
 from contactsense._urdf import describe_urdf
@@ -96,6 +96,20 @@ def test_convex_hulls_are_meshes():
     vertices, triangles = with_shape(shape.convex).links[1].geometry[0].params
     assert {tuple(row) for row in vertices} == {tuple(row) for row in TETRAHEDRON}
     assert triangles.shape == (4, 3)
+
+
+@pytest.mark.parametrize("scale", [(1, 1, 1), (2, -1, 0.5), (-1, -1, 1), (-1, -2, -3)])
+def test_scaled_mesh_keeps_its_size_and_outside(scale, tmp_path):
+    corners = "".join(f"v {x} {y} {z}\n" for x, y, z in TETRAHEDRON)
+    faces = "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in FACES)
+    (tmp_path / "part.obj").write_text(corners + faces)
+    row = " ".join(map(str, scale))
+    text = robot(link("a", shape(f'<mesh filename="file://{tmp_path}/part.obj" scale="{row}"/>')))
+    model = pin.buildModelFromXML(text)
+    geometry = pin.buildGeomFromUrdfString(model, text, pin.GeometryType.COLLISION)
+    vertices, triangles = describe_pinocchio(model, geometry).links[0].geometry[0].params
+    volume = np.linalg.det(vertices[triangles]).sum() / 6
+    assert volume == pytest.approx(abs(np.prod(scale)) / 6)
 
 
 @pytest.mark.parametrize(

@@ -197,9 +197,23 @@ def test_bad_argument_is_named(arguments, message, tmp_path):
         describe_urdf(write(tmp_path, ARM), **arguments)
 
 
-def test_bad_path_is_an_input_error():
+@pytest.mark.parametrize("path", [3, None, b"arm.urdf", "arms/\0/arm.urdf", "\0"])
+def test_bad_path_is_an_input_error(path):
     with pytest.raises(InputError, match="path must be"):
-        describe_urdf(3)
+        describe_urdf(path)
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        '<?xml version="1.0" encoding="klingon"?>',
+        '<?xml version="1.0" encoding="utf-32"?>',
+        '<!DOCTYPE r [<!ENTITY e SYSTEM "file:///etc/hostname">]>',
+    ],
+)
+def test_foreign_xml_is_refused(head, tmp_path):
+    with pytest.raises(ModelError, match="not XML"):
+        describe_urdf(write(tmp_path, head + '<robot name="&e;"><link name="a"/></robot>'))
 
 
 def test_mimic_joints_stay_independent_with_one_warning(tmp_path):

@@ -12,17 +12,22 @@ from .errors import GeometryError
 _SUPPORTED = "triangle meshes (BVHModel), Convex, Box, Cylinder, Sphere, Capsule"
 
 
-def shape_of(geometry: Any, name: str) -> tuple[GeometryKind, tuple[Any, ...]]:
-    """Kind and parameters of a coal geometry; `GeometryError` with the object's name where not supported."""
+def shape_of(geometry: Any, name: str, mirrored: bool = False) -> tuple[GeometryKind, tuple[Any, ...]]:
+    """Kind and parameters of a coal geometry; `GeometryError` with the object's name where not supported.
+
+    `mirrored`: the mesh file was scaled by a negative factor, which turned its triangles inside out.
+    """
     owner = f"geometry object '{name}'"
     # By name, so that the module which defines the classes (coal, earlier hppfcl) need not be known.
     kind = type(geometry).__name__
     if kind.startswith("BVHModel"):
         count = int(geometry.num_tris)
-        return _mesh(geometry.vertices(), [geometry.tri_indices(i) for i in range(count)], owner)
+        return _mesh(geometry.vertices(), [geometry.tri_indices(i) for i in range(count)], mirrored, owner)
     if kind == "Convex":
         polygons = geometry.polygons
-        return _mesh(geometry.points(), [polygons(i) for i in range(int(geometry.num_polygons))], owner)
+        return _mesh(
+            geometry.points(), [polygons(i) for i in range(int(geometry.num_polygons))], mirrored, owner
+        )
     if kind == "Box":
         return "box", _positive(2.0 * np.asarray(geometry.halfSide, dtype=np.float64), owner)
     if kind == "Sphere":
@@ -34,12 +39,15 @@ def shape_of(geometry: Any, name: str) -> tuple[GeometryKind, tuple[Any, ...]]:
     raise GeometryError(f"{owner} is a {kind}; supported: {_SUPPORTED}")
 
 
-def _mesh(vertices: Any, faces: list[Any], owner: str) -> tuple[GeometryKind, tuple[Any, ...]]:
+def _mesh(
+    vertices: Any, faces: list[Any], mirrored: bool, owner: str
+) -> tuple[GeometryKind, tuple[Any, ...]]:
     points = np.array(vertices, dtype=np.float64).reshape(-1, 3)
     if not faces:
         raise GeometryError(f"{owner} has no triangles")
     # coal keeps the scale of a mesh file in the vertices.
-    triangles = np.array([[face[0], face[1], face[2]] for face in faces], dtype=np.uint32)
+    order = (0, 2, 1) if mirrored else (0, 1, 2)
+    triangles = np.array([[face[i] for i in order] for face in faces], dtype=np.uint32)
     if not np.isfinite(points).all() or triangles.max() >= len(points):
         raise GeometryError(f"{owner} has vertices that are not finite or triangles that name none")
     return "mesh", (points, triangles)

@@ -40,7 +40,7 @@ class GeometryTuple(NamedTuple):
     `params` by `kind`: "mesh_file" (path, scale (3,)); "mesh" (vertices (n, 3), triangles (m, 3) uint32);
     "box" (x, y, z), full extents; "cylinder" (radius, length); "sphere" (radius,);
     "capsule" (radius, length of the cylindrical part). Cylinders and capsules lie along their z axis.
-    A scale may be negative: such a mesh is mirrored.
+    A scale may be negative: the file's mesh is then mirrored, and with a negative product turned inside out.
     """
 
     kind: GeometryKind

@@ -61,7 +61,7 @@ def _links(model: Any, geometry_model: Any) -> tuple[list[LinkTuple], list[str]]
         else:
             link = links[frame]
             placement = model.frames[frame].placement.actInv(shape.placement)
-        kind, params = shape_of(shape.geometry, shape.name)
+        kind, params = shape_of(shape.geometry, shape.name, mirrored=bool(np.prod(shape.meshScale) < 0.0))
         link.geometry.append(GeometryTuple(kind, params, np.array(placement.homogeneous, dtype=np.float64)))
     if not unnamed:
         return list(links.values()), []

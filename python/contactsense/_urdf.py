@@ -49,7 +49,8 @@ def describe_urdf(
     acceleration = _gravity(gravity)
     try:
         file = Path(path)
-    except TypeError as cause:
+        file.resolve()
+    except (TypeError, ValueError, OSError, RuntimeError) as cause:
         raise InputError(f"path must be a path to a URDF file, not {path!r}") from cause
     meshes = MeshFinder(file, package_dirs)
     tree = read_urdf(file)
