@@ -1,0 +1,28 @@
+"""Noise of the torque measurement."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ._arrays import FloatArray, not_negative
+
+
+class TorqueNoise:
+    """Gaussian error of measured torques, new at every sample, repeatable by seed.
+
+    Args:
+        percent: standard deviation in percent of the present torque of the joint.
+        newton_metres: standard deviation that is there at any torque [Nm; N for a sliding joint].
+        seed: of the generator.
+    """
+
+    def __init__(self, *, percent: float = 0.0, newton_metres: float = 0.0, seed: int = 0) -> None:
+        self.percent = not_negative("percent", percent)
+        self.newton_metres = not_negative("newton_metres", newton_metres)
+        self._generator = np.random.default_rng(seed)
+
+    def measure(self, tau: FloatArray) -> FloatArray:
+        """`tau` (n,) as a sensor would read it."""
+        relative, absolute = self._generator.standard_normal((2, tau.size))
+        measured: FloatArray = tau * (1.0 + 0.01 * self.percent * relative) + self.newton_metres * absolute
+        return measured

@@ -1,0 +1,440 @@
+"""The simulation: MuJoCo computes Pinocchio's dynamics, and measures what an observer expects."""
+
+import importlib
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install contactsense[sim]")
+
+import mujoco
+
+from contactsense._urdf import describe_urdf
+from contactsense.errors import InputError, ModelError
+from contactsense.sim import (
+    ComputedTorqueController,
+    Coordinates,
+    Measurement,
+    Push,
+    SimulatedRobot,
+    SineTrajectory,
+    TorqueNoise,
+    geoms_of,
+    mjcf_string,
+    mjcf_tree,
+    model_from_urdf,
+    named_model,
+    random_push,
+)
+
+DESCRIPTIONS = Path(__file__).resolve().parents[1] / "python" / "contactsense" / "descriptions"
+
+
+def _example(file: str, *, floating: bool) -> pin.Model:
+    prefix = Path(pin.__file__).parents[4]
+    path = prefix / "share" / "example-robot-data" / "robots" / file
+    if not path.exists():
+        pytest.skip("example-robot-data is not installed")
+    return model_from_urdf(path, floating_base=floating)
+
+
+def _continuous() -> pin.Model:
+    """A free body with a continuous and a sliding joint and a massless one, all with slanting axes."""
+    model = pin.Model()
+    base = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "free")
+    axis = np.array([1.0, 2.0, -2.0]) / 3
+    wheel = model.addJoint(base, pin.JointModelRUBY(), pin.SE3.Random(), "wheel")
+    hollow = model.addJoint(wheel, pin.JointModelRevoluteUnaligned(axis), pin.SE3.Random(), "hollow")
+    tip = model.addJoint(hollow, pin.JointModelRZ(), pin.SE3.Random(), "tip")
+    slide = model.addJoint(base, pin.JointModelPrismaticUnaligned(axis), pin.SE3.Random(), "slide")
+    for joint in (base, wheel, slide, tip):
+        inertia = pin.Inertia.FromBox(2.0, 0.1, 0.2, 0.3)
+        model.appendBodyToJoint(joint, inertia, pin.SE3.Random())
+    model.armature = np.concatenate([np.zeros(6), [0.1, 0.2, 0.3, 0.4]])
+    return model
+
+
+MODELS: dict[str, Callable[[], pin.Model]] = {
+    "iiwa14": lambda: named_model("iiwa14"),
+    "atlas": lambda: named_model("atlas"),
+    "panda": lambda: _example("panda_description/urdf/panda.urdf", floating=False),
+    "talos": lambda: _example("talos_data/robots/talos_reduced.urdf", floating=True),
+    "continuous": _continuous,
+}
+
+
+def _random_state(model: pin.Model, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    pin.seed(seed)
+    rng = np.random.default_rng(seed)
+    q = pin.randomConfiguration(model, np.full(model.nq, -2.0), np.full(model.nq, 2.0))
+    return q, rng.normal(size=model.nv), rng.normal(size=model.nv)
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_dynamics_agree_with_pinocchio(name: str) -> None:
+    model = MODELS[name]()
+    data = model.createData()
+    mj_model = mujoco.MjModel.from_xml_string(mjcf_string(model))
+    mj_data = mujoco.MjData(mj_model)
+    coordinates = Coordinates(model, mj_model)
+    assert mj_model.opt.jacobian == mujoco.mjtJacobian.mjJAC_DENSE
+    for seed in range(20):
+        q, v, a = _random_state(model, seed)
+        mj_data.qpos[:] = coordinates.qpos(q)
+        np.testing.assert_allclose(coordinates.q(mj_data.qpos), q, atol=1e-12)
+
+        mj_data.qvel[:] = 0
+        mujoco.mj_forward(mj_model, mj_data)
+        gravity = coordinates.v(q, mj_data.qfrc_bias)
+        np.testing.assert_allclose(gravity, pin.computeGeneralizedGravity(model, data, q), atol=1e-9)
+
+        mass = np.zeros((model.nv, model.nv))
+        mujoco.mj_fullM(mj_model, mj_data, mass)
+        basis = np.array([coordinates.qvel(q, row) for row in np.eye(model.nv)])
+        pin.crba(model, data, q)
+        expected = np.triu(data.M) + np.triu(data.M, 1).T
+        np.testing.assert_allclose(basis @ mass @ basis.T, expected, atol=1e-9)
+
+        mj_data.qvel[:] = coordinates.qvel(q, v)
+        np.testing.assert_allclose(coordinates.v(q, mj_data.qvel), v, atol=1e-12)
+        mj_data.qacc[:] = coordinates.qacc(q, v, a)
+        mujoco.mj_inverse(mj_model, mj_data)
+        tau = coordinates.v(q, mj_data.qfrc_inverse)
+        np.testing.assert_allclose(tau, pin.rnea(model, data, q, v, a), atol=1e-9)
+
+
+def test_joints_mujoco_lacks_are_named() -> None:
+    model = pin.Model()
+    model.addJoint(0, pin.JointModelSpherical(), pin.SE3.Identity(), "ball")
+    with pytest.raises(ModelError, match="'ball'"):
+        mjcf_string(model)
+    model = pin.Model()
+    model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3(np.eye(3), np.ones(3)), "base")
+    with pytest.raises(ModelError, match=r"'base'.*origin"):
+        mjcf_string(model)
+
+
+def test_impossible_inertia_is_named() -> None:
+    model = pin.Model()
+    joint = model.addJoint(0, pin.JointModelRX(), pin.SE3.Identity(), "elbow")
+    model.appendBodyToJoint(
+        joint, pin.Inertia(1.0, np.zeros(3), np.diag([1.0, 1.0, 5.0])), pin.SE3.Identity()
+    )
+    with pytest.raises(ModelError, match="'elbow'"):
+        mjcf_string(model)
+
+
+def test_absent_mujoco_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    monkeypatch.delitem(sys.modules, "contactsense.sim._mujoco")
+    with pytest.raises(ImportError, match=r"pip install contactsense\[sim\]"):
+        importlib.import_module("contactsense.sim._mujoco")
+
+
+def test_wrong_arguments_are_named() -> None:
+    model = named_model("iiwa14")
+    with pytest.raises(InputError, match="dt"):
+        mjcf_string(model, dt=0.0)
+    with pytest.raises(InputError, match="dt"):
+        SimulatedRobot(model, dt=-1.0)
+    with pytest.raises(ModelError, match="MuJoCo cannot read"):
+        SimulatedRobot(model, mjcf="<mujoco")
+    with pytest.raises(InputError, match="integrator"):
+        mjcf_string(model, integrator="Heun")  # type: ignore[arg-type]
+    robot = SimulatedRobot(model)
+    with pytest.raises(InputError, match=r"tau.*\(7,\)"):
+        robot.step(np.zeros(6))
+    with pytest.raises(InputError, match=r"tau.*entry 2"):
+        robot.step([0, 0, np.nan, 0, 0, 0, 0])
+    assert robot.time == 0.0
+    with pytest.raises(InputError, match="iiwa_link_3"):
+        robot.apply_force("link_3", np.zeros(3), np.ones(3))
+    with pytest.raises(InputError, match="fixed to the world"):
+        robot.apply_force("iiwa_link_0", np.zeros(3), np.ones(3))
+    assert not robot.external_torque().any()
+
+
+def test_geoms_lie_where_the_description_has_them() -> None:
+    description = describe_urdf(DESCRIPTIONS / "iiwa14.urdf")
+    model = named_model("iiwa14")
+    geoms = geoms_of(description.links, contype=1, conaffinity=2)
+    assert len(geoms) == sum(len(link.geometry) for link in description.links)
+    robot = SimulatedRobot(model, geoms=geoms)
+    q = _random_state(model, 1)[0]
+    robot.reset(q)
+    for link in description.links:
+        for number, shape in enumerate(link.geometry):
+            geom = robot.mj_data.geom(f"{link.name}:{number}")
+            pose = robot.link_pose(link.name) @ shape.placement
+            np.testing.assert_allclose(geom.xpos, pose[:3, 3], atol=1e-12)
+            np.testing.assert_allclose(geom.xmat.reshape(3, 3), pose[:3, :3], atol=1e-12)
+    capsule = robot.mj_model.geom("iiwa_link_6:0")
+    assert capsule.type[0] == mujoco.mjtGeom.mjGEOM_CAPSULE
+    assert (capsule.contype[0], capsule.conaffinity[0]) == (1, 2)
+    # Shapes carry no mass: the dynamics stay the model's.
+    np.testing.assert_allclose(robot.mj_model.body_subtreemass[0], sum(i.mass for i in model.inertias[1:]))
+
+
+@pytest.mark.parametrize("name", ["iiwa14", "atlas"])
+def test_forces_act_as_the_jacobian_says(name: str) -> None:
+    model = named_model(name)
+    robot = SimulatedRobot(model)
+    data = model.createData()
+    for seed, link in enumerate(
+        ["iiwa_link_3", "iiwa_link_ee"] if name == "iiwa14" else ["l_larm", "pelvis"]
+    ):
+        q, v, _ = _random_state(model, seed)
+        robot.reset(q, v)
+        rng = np.random.default_rng(seed)
+        local, force = rng.normal(size=(2, 3))
+        frame = model.getFrameId(link, pin.FrameType.BODY)
+        pin.computeJointJacobians(model, data, q)
+        pin.updateFramePlacements(model, data)
+        np.testing.assert_allclose(robot.link_pose(link), data.oMf[frame].homogeneous, atol=1e-12)
+        point = data.oMf[frame].act(local)
+        jacobian = pin.getFrameJacobian(model, data, frame, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)
+        arm = point - data.oMf[frame].translation
+        expected = jacobian.T @ np.concatenate([force, np.cross(arm, force)])
+        robot.apply_force(link, point, 0.25 * force)
+        robot.apply_force(link, point, 0.75 * force)
+        np.testing.assert_allclose(robot.external_torque(), expected, atol=1e-10)
+        mujoco.mj_forward(robot.mj_model, robot.mj_data)
+        felt = robot.coordinates.v(q, np.array(robot.mj_data.qfrc_smooth + robot.mj_data.qfrc_bias))
+        np.testing.assert_allclose(felt, expected, atol=1e-10)
+        robot.clear_forces()
+        assert not robot.external_torque().any()
+
+
+def test_free_fall_of_a_floating_robot() -> None:
+    model = named_model("atlas")
+    robot = SimulatedRobot(model)
+    data = model.createData()
+    start = pin.centerOfMass(model, data, robot.q).copy()
+    for _ in range(200):
+        robot.step(np.zeros(30))
+    end = pin.centerOfMass(model, data, robot.q)
+    np.testing.assert_allclose(end - start, [0, 0, -0.5 * 9.81 * 0.2**2], atol=1e-9)
+
+
+def test_measurement_belongs_to_the_beginning_of_its_step() -> None:
+    model = named_model("iiwa14")
+    robot = SimulatedRobot(model, dt=0.001)
+    q, v, _ = _random_state(model, 5)
+    robot.reset(q, v)
+    start = robot.measure()
+    np.testing.assert_allclose(start.q, q)
+    np.testing.assert_array_equal(start.tau, 0)
+    first = robot.step(np.full(7, 2.0))
+    assert first.time == 0.0
+    np.testing.assert_allclose(first.q, q)
+    np.testing.assert_allclose(first.v, v)
+    np.testing.assert_array_equal(first.tau, 2.0)
+    np.testing.assert_array_equal(first.tau_mean, 2.0)
+    reached = robot.q
+    second = robot.step(np.full(7, 4.0))
+    assert second is robot.measure()
+    assert second.time == pytest.approx(0.001)
+    np.testing.assert_array_equal(second.q, reached)
+    np.testing.assert_array_equal(second.tau, 4.0)
+    np.testing.assert_array_equal(second.tau_mean, 3.0)
+    # The torque of the first tick is what moved the robot between the two.
+    acceleration = (second.v - first.v) / robot.dt
+    expected = pin.aba(model, model.createData(), q, v, np.full(7, 2.0))
+    np.testing.assert_allclose(acceleration, expected, rtol=0.02, atol=0.5)
+
+
+def test_substeps_and_integrator_agree() -> None:
+    model = named_model("iiwa14")
+    ends = []
+    for substeps in (1, 10):
+        robot = SimulatedRobot(model, substeps=substeps)
+        robot.reset(*_random_state(model, 2)[:2])
+        for _ in range(100):
+            robot.step(np.zeros(7))
+        ends.append(robot.q)
+    np.testing.assert_allclose(ends[0], ends[1], atol=1e-8)
+
+
+def test_noise_has_its_size_and_repeats() -> None:
+    tau = np.array([100.0, 0.0])
+    noise = TorqueNoise(percent=2.0, newton_metres=0.5, seed=3)
+    drawn = np.array([noise.measure(tau) for _ in range(20_000)])
+    np.testing.assert_allclose(drawn.mean(axis=0), tau, atol=0.05)
+    np.testing.assert_allclose(drawn.std(axis=0), [np.hypot(2.0, 0.5), 0.5], rtol=0.03)
+    again = TorqueNoise(percent=2.0, newton_metres=0.5, seed=3)
+    np.testing.assert_array_equal(drawn[0], again.measure(tau))
+    clean, noisy = (SimulatedRobot(named_model("iiwa14"), noise=n) for n in (None, again))
+    torques = np.full(7, 10.0)
+    assert (clean.step(torques).tau == torques).all()
+    assert (noisy.step(torques).tau != torques).all()
+    # The sensor errs, the motor does not.
+    np.testing.assert_array_equal(clean.q, noisy.q)
+
+
+def test_trajectory_is_smooth_fast_and_within_limits() -> None:
+    model = named_model("iiwa14")
+    motion = SineTrajectory.for_model(model, peak_speed=1.9, seed=4, horizon=30.0)
+    start = motion.at(0.0)
+    np.testing.assert_array_equal(start.v, 0)
+    np.testing.assert_array_equal(start.a, 0)
+    times = np.arange(0.0, 30.0, 0.01)
+    points = [motion.at(time) for time in times]
+    speed = np.abs([point.v for point in points]).max(axis=0)
+    np.testing.assert_allclose(speed, np.minimum(1.9, model.velocityLimit), rtol=0.01)
+    q = np.array([point.q for point in points])
+    assert (q > model.lowerPositionLimit).all()
+    assert (q < model.upperPositionLimit).all()
+    h = 1e-5
+    for time in (0.7, 1.99, 11.3):
+        before, here, after = motion.at(time - h), motion.at(time), motion.at(time + h)
+        np.testing.assert_allclose((after.q - before.q) / (2 * h), here.v, atol=1e-7)
+        np.testing.assert_allclose((after.v - before.v) / (2 * h), here.a, atol=1e-6)
+    same = SineTrajectory.for_model(model, peak_speed=1.9, seed=4, horizon=30.0).at(5.0)
+    other = SineTrajectory.for_model(model, peak_speed=1.9, seed=5, horizon=30.0).at(5.0)
+    np.testing.assert_array_equal(same.q, motion.at(5.0).q)
+    assert (other.q != same.q).all()
+
+
+@dataclass
+class _Run:
+    measurements: list[Measurement]
+    tracking: float
+
+
+def _run(robot: SimulatedRobot, motion: SineTrajectory, seconds: float, push: Push | None = None) -> _Run:
+    controller = ComputedTorqueController(robot.model)
+    robot.reset(motion.at(0.0).q)
+    measurements, tracking = [], 0.0
+    for _ in range(round(seconds / robot.dt)):
+        reference = motion.at(robot.time)
+        q, v = robot.q, robot.v
+        tracking = max(tracking, float(np.abs(reference.q - q).max()))
+        robot.clear_forces()
+        if push is not None:
+            push.apply(robot)
+        measurements.append(robot.step(controller.torque(q, v, reference)))
+    return _Run(measurements, tracking)
+
+
+def _observe(model: pin.Model, run: _Run, dt: float, torque: str, gain: float = 50.0) -> np.ndarray:
+    """Momentum observer with p = M v at the ticks and the trapezoidal rule in between."""
+    data = model.createData()
+    integral: np.ndarray = np.zeros(model.nv)
+    residual: np.ndarray = np.zeros(model.nv)
+    start, last, residuals = None, None, []
+    for sample in run.measurements:
+        pin.crba(model, data, sample.q)
+        mass = np.triu(data.M) + np.triu(data.M, 1).T
+        pin.computeCoriolisMatrix(model, data, sample.q, sample.v)
+        gravity = pin.computeGeneralizedGravity(model, model.createData(), sample.q)
+        flow = getattr(sample, torque) + data.C.T @ sample.v - gravity
+        momentum = mass @ sample.v
+        if start is None:
+            start = momentum
+        else:
+            integral = integral + 0.5 * dt * (flow + last)
+            # r = K (p - p0 - integral - int r), r by the trapezoidal rule as well
+            new = (gain * (momentum - start - integral) - 0.5 * gain * dt * residual) / (1 + 0.5 * gain * dt)
+            integral = integral + 0.5 * dt * (residual + new)
+            residual = new
+        last = flow
+        residuals.append(residual)
+    return np.array(residuals)
+
+
+def test_controller_tracks_and_observer_stays_silent() -> None:
+    model = named_model("iiwa14")
+    motion = SineTrajectory.for_model(model, peak_speed=1.9, seed=1, horizon=6.0)
+    run = _run(SimulatedRobot(model), motion, 6.0)
+    assert run.tracking < 0.01
+    # Half a tick of torque is worth 100 times what the rest of the discretisation is.
+    assert np.abs(_observe(model, run, 0.001, "tau_mean")).max() < 1e-3
+    assert np.abs(_observe(model, run, 0.001, "tau")).max() > 1e-2
+
+
+def test_push_shows_in_the_observer_as_applied() -> None:
+    model = named_model("iiwa14")
+    motion = SineTrajectory.for_model(model, peak_speed=1.0, seed=2, horizon=3.0)
+    push = Push("iiwa_link_5", np.array([0.0, 0.1, 0.15]), np.array([0.0, -1.0, 0.2]), 30.0, 1.5, 0.5)
+    robot = SimulatedRobot(model)
+    run = _run(robot, motion, 1.75, push)
+    truth = robot.external_torque()
+    assert np.abs(truth).max() > 3.0
+    seen = _observe(model, run, 0.001, "tau_mean", gain=300.0)[-1]
+    np.testing.assert_allclose(seen, truth, atol=0.05 * np.abs(truth).max())
+
+
+def test_torque_limits_hold() -> None:
+    model = named_model("iiwa14")
+    controller = ComputedTorqueController(model, torque_limits=np.full(7, 1.0))
+    motion = SineTrajectory.for_model(model, seed=1)
+    torque = controller.torque(np.zeros(7), np.zeros(7), motion.at(3.0))
+    assert np.abs(torque).max() == 1.0
+    with pytest.raises(InputError, match="fixed base"):
+        ComputedTorqueController(named_model("atlas"))
+
+
+def test_push_is_a_half_sine() -> None:
+    push = Push("hand", np.array([0.1, 0.0, 0.0]), np.array([0.0, 0.0, 2.0]), 40.0, 1.0, 0.2)
+    assert [push.magnitude(t) for t in (0.9, 1.0, 1.201, 1.5)] == [0.0] * 4
+    assert push.magnitude(1.1) == pytest.approx(40.0)
+    assert push.magnitude(1.05) == pytest.approx(40.0 * np.sin(np.pi / 4))
+    pose = np.eye(4)
+    pose[:3, :3] = pin.rpy.rpyToMatrix(np.pi / 2, 0.0, 0.0)
+    pose[:3, 3] = [1.0, 2.0, 3.0]
+    point, force = push.force_at(1.1, pose)
+    np.testing.assert_allclose(point, [1.1, 2.0, 3.0])
+    np.testing.assert_allclose(force, [0.0, -40.0, 0.0], atol=1e-12)
+    world = Push("hand", push.point_local, push.direction, 40.0, 1.0, 0.2, frame="world")
+    np.testing.assert_allclose(world.force_at(1.1, pose)[1], [0.0, 0.0, 40.0], atol=1e-12)
+    with pytest.raises(InputError, match="duration"):
+        Push("hand", push.point_local, push.direction, 40.0, 1.0, 0.0)
+
+
+@dataclass
+class _Samples:
+    points: np.ndarray
+    normals: np.ndarray
+
+
+class _Ball:
+    """Unit sphere."""
+
+    def sample(self, n: int, seed: int = 0) -> _Samples:
+        normals = np.random.default_rng(seed).normal(size=(n, 3))
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        return _Samples(normals.copy(), normals)
+
+
+def test_random_pushes_go_inward_within_the_cone() -> None:
+    angle = 0.5
+    pushes = [
+        random_push("ball", _Ball(), peak_force=1, start=0, duration=1, cone_angle=angle, seed=seed)
+        for seed in range(400)
+    ]
+    cosines = np.array([-push.direction @ push.point_local for push in pushes])
+    assert cosines.min() > np.cos(angle) - 1e-12
+    # Uniform over the solid angle: the cosine is uniform.
+    assert cosines.mean() == pytest.approx(0.5 * (1 + np.cos(angle)), abs=0.01)
+    again = random_push("ball", _Ball(), peak_force=1, start=0, duration=1, cone_angle=angle, seed=7)
+    np.testing.assert_array_equal(again.direction, pushes[7].direction)
+    with pytest.raises(InputError, match="cone_angle"):
+        random_push("ball", _Ball(), peak_force=1, start=0, duration=1, cone_angle=2.0)
+
+
+def test_own_world_replaces_the_bare_one() -> None:
+    model = named_model("iiwa14")
+    root = mjcf_tree(model)
+    world = root.find("worldbody")
+    assert world is not None
+    ET.SubElement(world, "geom", name="wall", type="box", size="1 1 0.1", pos="0 0 3")
+    robot = SimulatedRobot(model, mjcf=ET.tostring(root, encoding="unicode"))
+    assert robot.mj_model.geom("wall").id == 0
+    with pytest.raises(ModelError, match="has no joint"):
+        SimulatedRobot(named_model("atlas"), mjcf=ET.tostring(root, encoding="unicode"))
