@@ -118,7 +118,7 @@ def judge(robot: Robot, isolator: ContactIsolator, touch: Touch, threshold: floa
     jacobian = robot.jacobian(touch.q, touch.link, touch.point)
     tau_ext = jacobian[:3].T @ touch.force
     columns = np.flatnonzero(np.any(jacobian != 0.0, axis=0))
-    determined = np.linalg.matrix_rank(jacobian[:, columns] * _BALANCE, tol=None, rtol=RANK_TOLERANCE) == 6 if columns.size else False
+    determined = wrench_rank(jacobian[:, columns]) == 6
     own_joint_feels = columns.size > 0 and abs(tau_ext[columns[-1]]) > threshold
     contacts = isolator.isolate(touch.q, tau_ext).contacts
     if not contacts:
@@ -134,11 +134,17 @@ def judge(robot: Robot, isolator: ContactIsolator, touch: Touch, threshold: floa
         return ("MISSED, though determined", np.nan, np.nan)
     named = "link named" if contact.link == touch.link else "another link named"
     why = "own joint feels it" if own_joint_feels else "own joint does not feel it"
-    rank = "" if determined else ", rank below 6"
-    return (f"{named}; {why}{rank}", np.nan, np.nan)
+    note = "" if determined else ", rank below 6"
+    return (f"{named}; {why}{note}", np.nan, np.nan)
 
 
-_BALANCE = np.array([[1.0]] * 3 + [[1.0 / 0.3]] * 3)
+def wrench_rank(jacobian: FloatArray) -> int:
+    """Rank of a `(6, n)` Jacobian, moments balanced against forces by a lever of 0.3 m."""
+    if jacobian.shape[1] == 0:
+        return 0
+    balance = np.array([[1.0]] * 3 + [[1.0 / 0.3]] * 3)
+    values = np.linalg.svd(jacobian * balance, compute_uv=False)
+    return int(np.sum(values > RANK_TOLERANCE * values[0]))
 
 
 def run(robot: Robot, points: int = 100, seed: int = 0, threshold: float = 1e-3) -> list[LinkResult]:

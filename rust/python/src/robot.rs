@@ -56,6 +56,12 @@ impl PyRobot {
         PyTuple::new(py, self.0.joint_names())
     }
 
+    /// One of "free_flyer", "revolute", "continuous", "prismatic" a joint.
+    #[getter]
+    fn joint_kinds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.0.joint_kinds().map(|kind| kind.name()))
+    }
+
     #[getter]
     fn link_names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.0.touchable_links().iter().map(|link| &self.0.links()[*link].name))

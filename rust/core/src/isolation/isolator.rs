@@ -130,6 +130,10 @@ impl ContactIsolator {
             self.isolation.rank_deficit = 6 - wrench.rank;
             if wrench.rank < 6 {
                 self.name_link(tip);
+                // The torques do not exclude the links behind: a line can cross their joints' axes.
+                self.bodies.grow_all(&self.robot, tip);
+                self.isolation.link_candidates.clear();
+                self.isolation.link_candidates.extend(self.bodies.links(&self.robot));
                 self.explain(kinematics, body, &wrench);
                 return;
             }

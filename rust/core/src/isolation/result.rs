@@ -36,8 +36,7 @@ pub struct Contact {
     pub wrench: Vector6<f64>,
     /// False: the link is known, the point is not.
     pub located: bool,
-    /// How far the point moves on the surface if every torque errs at random by its threshold (one standard
-    /// deviation) [m].
+    /// Standard deviation of the point on the surface, if a torque's is a third of its threshold [m].
     pub point_std: f64,
     /// This contact's part of [`Isolation::candidates`], best first.
     pub candidates: Range<usize>,

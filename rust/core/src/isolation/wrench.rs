@@ -11,6 +11,8 @@ const LEVER: f64 = 0.3;
 const RANK_TOLERANCE: f64 = 1e-7;
 /// An SVD of a finite 6 x 6 matrix converges within a few sweeps; this bounds the time.
 const SVD_ITERATIONS: usize = 200;
+/// Thresholds are set well above the noise: at three standard deviations of a torque.
+const THRESHOLD_IN_DEVIATIONS: f64 = 3.0;
 /// Rows that one factorisation takes in: six of the triangle so far and six new ones.
 const BLOCK: usize = 12;
 
@@ -23,7 +25,7 @@ pub(super) struct WrenchEstimate {
     /// Where the moment refers to, from the kinematics' origin.
     pub reference: Vector3<f64>,
     pub rank: usize,
-    /// `root * root^T` is the covariance of the wrench if each torque's standard deviation is its threshold.
+    /// `root * root^T` is the covariance of the wrench.
     root: Matrix6<f64>,
 }
 
@@ -77,6 +79,7 @@ pub(super) fn estimate_wrench(
     for i in 3..6 {
         root.row_mut(i).unscale_mut(LEVER);
     }
+    root /= THRESHOLD_IN_DEVIATIONS;
     let (force, moment) = split(&solution);
     WrenchEstimate { force, moment: moment / LEVER, reference, rank, root }
 }
@@ -126,7 +129,7 @@ impl WrenchEstimate {
         linear.dot(&self.force) + angular.dot(&self.moment)
     }
 
-    /// Standard deviation of a point of the line across the line, if each torque's is its threshold [m].
+    /// Standard deviation of a point of the line across the line [m].
     pub fn point_std(&self, point: &Vector3<f64>) -> f64 {
         let lever = (point - self.reference).cross_matrix();
         let across = self.force.cross_matrix() / self.force.norm_squared();

@@ -19,6 +19,16 @@ pub enum JointKind {
 }
 
 impl JointKind {
+    /// The kind's name in Python.
+    pub fn name(self) -> &'static str {
+        match self {
+            JointKind::FreeFlyer => "free_flyer",
+            JointKind::Revolute => "revolute",
+            JointKind::Continuous => "continuous",
+            JointKind::Prismatic => "prismatic",
+        }
+    }
+
     /// Number of configuration variables.
     pub fn nq(self) -> usize {
         match self {

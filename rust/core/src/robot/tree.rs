@@ -211,6 +211,11 @@ impl Robot {
         &self.joint_names
     }
 
+    /// How each joint moves.
+    pub fn joint_kinds(&self) -> impl ExactSizeIterator<Item = JointKind> + '_ {
+        self.bodies[1..].iter().map(|body| body.kind)
+    }
+
     /// All links, also those without surface.
     pub fn links(&self) -> &[Link] {
         &self.links
