@@ -5,6 +5,7 @@
 
 mod build;
 mod closest;
+mod collada;
 mod components;
 mod load;
 mod mesh;
