@@ -11,6 +11,9 @@ const KINDS: &str = "STL (binary or ASCII), OBJ and COLLADA (.stl, .obj, .dae)";
 const STL_HEADER: usize = 80;
 const STL_TRIANGLE: u64 = 50;
 
+/// Vertices [m], and the triangles' indices into them.
+pub type VerticesAndTriangles = (Vec<[f64; 3]>, Vec<[u32; 3]>);
+
 type Soup = (Vec<Vector3<f64>>, Vec<[u32; 3]>);
 
 /// Vertices [m] and triangles of a mesh file, scaled along each axis.
@@ -22,7 +25,7 @@ type Soup = (Vec<Vector3<f64>>, Vec<[u32; 3]>);
 /// # Errors
 /// [`Error::Geometry`] with the path if the file cannot be read, is cut short or malformed, has no triangles, or is
 /// of another kind; also if the scale is zero or not finite.
-pub fn load_mesh(path: &Path, scale: [f64; 3]) -> Result<(Vec<[f64; 3]>, Vec<[u32; 3]>)> {
+pub fn load_mesh(path: &Path, scale: [f64; 3]) -> Result<VerticesAndTriangles> {
     if !scale.iter().all(|s| s.is_finite() && *s != 0.0) {
         let path = path.display();
         return Err(Error::Geometry(format!(

@@ -24,7 +24,7 @@ mod winding;
 #[cfg(test)]
 mod tests;
 
-pub use load::load_mesh;
+pub use load::{load_mesh, VerticesAndTriangles};
 pub use part::{Geometry, Part};
 
 use nalgebra::Vector3;

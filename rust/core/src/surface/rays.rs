@@ -31,7 +31,7 @@ pub(super) fn cast(
     hits: &mut Vec<RayHit>,
 ) -> bool {
     let finite = origin.iter().chain(direction.iter()).all(|x| x.is_finite());
-    if !finite || !(direction.norm_squared() > 0.0) || t_min.is_nan() {
+    if !finite || direction.norm_squared() == 0.0 || t_min.is_nan() {
         return true;
     }
     let start = hits.len();
@@ -196,9 +196,9 @@ impl Mesh {
             } else {
                 let node = &tree.nodes[child.0 as usize];
                 let meets = slabs.meet(node);
-                for lane in 0..4 {
-                    if meets[lane] {
-                        stack[height] = node.child[lane].0;
+                for (meets, child) in meets.into_iter().zip(node.child) {
+                    if meets {
+                        stack[height] = child.0;
                         height += 1;
                     }
                 }

@@ -194,7 +194,7 @@ fn split_by_area(items: &mut [Item], low: [f64; 3], high: [f64; 3]) -> Option<us
     let mut best: Option<(f64, usize, usize)> = None;
     for axis in 0..3 {
         let extent = high[axis] - low[axis];
-        if !(extent > 0.0) {
+        if extent <= 0.0 {
             continue;
         }
         let mut bins = [(Bounds::EMPTY, 0usize); BINS];

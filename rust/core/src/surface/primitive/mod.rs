@@ -165,7 +165,7 @@ impl Placed {
         };
         for (crossing, entering) in crossings.into_iter().zip([true, false]) {
             let distance = crossing.distance + shift;
-            if !(distance >= t_min) {
+            if distance < t_min {
                 continue;
             }
             if hits.len() == hits.capacity() {
