@@ -7,6 +7,7 @@ mod build;
 mod closest;
 mod collada;
 mod components;
+mod line;
 mod load;
 mod mesh;
 mod part;

@@ -44,7 +44,7 @@ fn closest_points() {
     for mesh in meshes() {
         let (surface, _) = surface(&mesh);
         let (center, radius) = surface.bounding_sphere();
-        for i in 0..400 {
+        for i in 0..if cfg!(debug_assertions) { 60 } else { 400 } {
             let scale = [0.5, 1.1, 5.0, 1e4][i % 4] * radius;
             let mut p = center + random.vector() * scale;
             if i % 3 == 0 {

@@ -217,6 +217,11 @@ proptest! {
             check_closest(&geometry, &still(geometry.clone()), &p.into());
         }
     }
+}
+
+proptest! {
+    // Each case builds four meshes.
+    #![proptest_config(ProptestConfig { cases: if cfg!(debug_assertions) { 10 } else { 300 }, failure_persistence: None, ..Default::default() })]
 
     #[test]
     fn as_its_tessellation(size in prop::array::uniform3(0.05..0.5f64), seed in any::<u64>()) {
