@@ -12,7 +12,7 @@ type Result<T> = std::result::Result<T, String>;
 /// Deepest nesting of nodes; deeper can only be a loop of references.
 const MAX_NESTING: usize = 64;
 
-/// Vertices [m] and triangles of the document's scene. The up axis is ignored, as ROS does.
+/// Vertices (m) and triangles of the document's scene. The up axis is ignored, as ROS does.
 pub(super) fn parse(text: &str) -> Result<Soup> {
     let document = Document::parse(text).map_err(|error| error.to_string())?;
     let root = document.root_element();

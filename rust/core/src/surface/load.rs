@@ -11,12 +11,12 @@ const KINDS: &str = "STL (binary or ASCII), OBJ and COLLADA (.stl, .obj, .dae)";
 const STL_HEADER: usize = 80;
 const STL_TRIANGLE: u64 = 50;
 
-/// Vertices [m], and the triangles' indices into them.
+/// Vertices (m), and the triangles' indices into them.
 pub type VerticesAndTriangles = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 
 type Soup = (Vec<Vector3<f64>>, Vec<[u32; 3]>);
 
-/// Vertices [m] and triangles of a mesh file, scaled along each axis.
+/// Vertices (m) and triangles of a mesh file, scaled along each axis.
 ///
 /// STL (binary or ASCII), OBJ (polygons become triangles) and COLLADA with its nodes' transforms and its unit. As
 /// usual in ROS, COLLADA's up axis is ignored: z stays z. A scale that mirrors also turns the triangles, so that

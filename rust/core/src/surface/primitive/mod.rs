@@ -17,7 +17,7 @@ use crate::spatial::Pose;
 /// Segments of a full circle in a tessellation.
 const SEGMENTS: usize = 48;
 
-/// A primitive in its own frame [m].
+/// A primitive in its own frame (m).
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Primitive {
     Box(Vector3<f64>),
