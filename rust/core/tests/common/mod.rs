@@ -20,13 +20,22 @@ fn capsule(name: &str, joint: usize, length: f64) -> LinkDescription {
     }
 }
 
-fn joint(name: &str, parent: usize, kind: JointKind, axis: Vector3<f64>, at: Vector3<f64>) -> JointDescription {
+fn joint(
+    name: &str,
+    parent: usize,
+    kind: JointKind,
+    axis: Vector3<f64>,
+    at: Vector3<f64>,
+) -> JointDescription {
     JointDescription {
         name: name.into(),
         parent,
         kind,
         axis,
-        placement: Pose { rotation: Rotation3::from_euler_angles(0.1, -0.2, 0.3).into_inner(), translation: at },
+        placement: Pose {
+            rotation: Rotation3::from_euler_angles(0.1, -0.2, 0.3).into_inner(),
+            translation: at,
+        },
         mass: 2.0,
         com: Vector3::new(0.01, -0.02, 0.12),
         inertia: Matrix3::new(0.03, 0.001, 0.0, 0.001, 0.03, 0.002, 0.0, 0.002, 0.01),
