@@ -20,14 +20,14 @@ SOURCES = {"measured": "momentum observer on measured torques", "vendor": "the v
 FIGURES = (
     "felt",
     "early",
-    "onset,\nms",
+    "onset\nms",
     "false\n/min",
     "exact",
-    "within\none",
-    "named\nmost",
+    "near",
+    "most",
     "agree",
-    "at a\npoint",
-    "spread,\nmm",
+    "point",
+    "apart\nmm",
 )
 
 
@@ -45,9 +45,9 @@ def print_study(study: Study, console: Console, *, touches: bool = False) -> Non
         "Onset (median/greatest): after the label's begin. Labels are by hand: an onset",
         f"up to {EARLY:g} s before belongs to the touch, and is counted as early too.",
         "False: onsets at any other time, per minute of it.",
-        "Exact, within one: touches whose link is named right, or as a neighbour.",
-        "Agree: share of the link named most. At a point: located (+ behind the link).",
-        "Spread: RMS distance of a file's located points from their mean.",
+        "Exact, near: touches whose link is named right, or as it or a neighbour.",
+        "Most, agree: the link named most, its share. Point: located (+ behind a link).",
+        "Apart: RMS distance of a file's located points from their mean.",
         f"{repeated:.0%} of the rows repeat the row before; the monitor was given all of them.",
     )
     console.print("\n".join(notes), style="dim", highlight=False)
@@ -56,21 +56,18 @@ def print_study(study: Study, console: Console, *, touches: bool = False) -> Non
 def table(evaluation: Evaluation) -> Table:
     """One row a file."""
     title = f"Franka touches, {SOURCES[evaluation.settings.source]}"
-    result = Table(
-        title=title, title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), show_edge=False
-    )
-    for name in ("file", "link"):
-        result.add_column(name, no_wrap=True)
+    result = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, padding=0, show_edge=False)
+    result.add_column("file\nlink", no_wrap=True)
     for name in FIGURES:
         result.add_column(name, justify="right", no_wrap=True)
     for log in evaluation.logs:
         link, _ = most_frequent(log.touches)
         cells = _cells(summarise([log]), "-" if link is None else str(link))
-        result.add_row(log.name + ("*" if log.tuning else ""), str(log.link), *cells)
+        result.add_row(f"{log.name}{'*' if log.tuning else ' '} {log.link}", *cells)
     result.add_section()
     if any(not log.tuning for log in evaluation.logs):
-        result.add_row("held out", "", *_cells(evaluation.held_out, ""))
-    result.add_row("all", "", *_cells(evaluation.overall, ""), style="bold")
+        result.add_row("held out", *_cells(evaluation.held_out, ""))
+    result.add_row("all", *_cells(evaluation.overall, ""), style="bold")
     return result
 
 
