@@ -90,7 +90,7 @@ pub struct PyContactMonitor(ContactMonitor);
 impl PyContactMonitor {
     #[new]
     #[pyo3(signature = (robot, *, dt, observer_gain=None, torque_threshold=None, bias_time_constant=None,
-                        hold_time=0.02, max_contacts=5, pushing=true))]
+                        bias_settle_time=None, hold_time=0.02, max_contacts=5, pushing=true))]
     #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
         robot: &Bound<'_, PyRobot>,
@@ -98,6 +98,7 @@ impl PyContactMonitor {
         observer_gain: Option<&Bound<'_, PyAny>>,
         torque_threshold: Option<&Bound<'_, PyAny>>,
         bias_time_constant: Option<f64>,
+        bias_settle_time: Option<f64>,
         hold_time: f64,
         max_contacts: usize,
         pushing: bool,
@@ -115,6 +116,7 @@ impl PyContactMonitor {
             },
             hold_time,
             bias_time_constant,
+            bias_settle_time,
         };
         let monitor = ContactMonitor::new(robot.get().0.clone(), &options);
         Ok(Self(monitor.map_err(|error| to_python(robot.py(), error))?))
