@@ -5,10 +5,27 @@ from typing import Any, Final, Literal, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from typing_extensions import Self
+from typing_extensions import Self, disjoint_base
+
+__all__ = [
+    "Candidate",
+    "ClosestPoints",
+    "Contact",
+    "ContactIsolator",
+    "ContactMonitor",
+    "ContactReport",
+    "Isolation",
+    "MomentumObserver",
+    "RayHits",
+    "Robot",
+    "Surface",
+    "SurfaceSamples",
+    "build_profile",
+]
 
 build_profile: Final[Literal["debug", "release"]]
 
+@disjoint_base
 class Robot:
     def __new__(
         cls,
@@ -176,6 +193,7 @@ class ContactMonitor:
         observer_gain: ArrayLike | None = None,
         torque_threshold: ArrayLike | None = None,
         bias_time_constant: float | None = None,
+        bias_settle_time: float | None = None,
         hold_time: float = 0.02,
         max_contacts: int = 5,
         pushing: bool = True,

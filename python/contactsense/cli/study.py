@@ -32,7 +32,7 @@ def franka_touch(
     data: Annotated[Path, typer.Option(help="Folder of the logs: a4.csv.gz and the like.")],
     touches: Annotated[bool, typer.Option("--touches", help="List every touch, too.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print all results as JSON.")] = False,
-    png: Annotated[Path | None, typer.Option(help="Write a picture to this file.")] = None,
+    png: Annotated[Path, typer.Option(help="Where to write the picture.")] = Path("franka_touch.png"),
     plot_log: Annotated[
         str | None, typer.Option(help="Log that the picture shows over time (default: first held out).")
     ] = None,
@@ -44,22 +44,21 @@ def franka_touch(
     from ..studies import franka_touch as study
     from ..studies.franka_touch import report
 
-    if png is not None:
-        try:
-            from ..studies.franka_touch.plot import save_plot
-        except ModuleNotFoundError as missing:
-            raise MissingExtraError(missing.name or "matplotlib", "study") from missing
+    try:
+        from ..studies.franka_touch.plot import save_plot
+    except ModuleNotFoundError as missing:
+        raise MissingExtraError(missing.name or "matplotlib", "study") from missing
     result = study.run(data, tune=tune)
     if plot_log is not None and plot_log not in [log.name for log in result.logs]:
         raise InputError(
             f"plot_log: there is no log '{plot_log}'; there are {', '.join(log.name for log in result.logs)}"
         )
-    if png is not None:
-        try:
-            save_plot(result, png, plot_log)
-        except (OSError, ValueError) as cause:
-            raise InputError(f"png: cannot write '{png}': {cause}") from cause
+    try:
+        save_plot(result, png, plot_log)
+    except (OSError, ValueError) as cause:
+        raise InputError(f"png: cannot write '{png}': {cause}") from cause
     if as_json:
         print(json.dumps(report.as_data(result), indent=2, allow_nan=False))
     else:
         report.print_study(result, Console(), touches=touches)
+        print(f"Picture: {png}")

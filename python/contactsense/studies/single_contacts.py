@@ -1,4 +1,4 @@
-"""Single contacts with ideal measurements: what the torques determine, and how exactly (Vorndamme 2017, VI-B)."""
+"""Single contacts, ideal measurements: what the torques determine, how exactly (Vorndamme 2017, VI-B)."""
 
 from __future__ import annotations
 
@@ -116,7 +116,9 @@ def _tilt(direction: FloatArray, rng: np.random.Generator) -> FloatArray:
     return tilted
 
 
-def judge(robot: Robot, isolator: ContactIsolator, touch: Touch, threshold: float) -> tuple[str, float, float]:
+def judge(
+    robot: Robot, isolator: ContactIsolator, touch: Touch, threshold: float
+) -> tuple[str, float, float]:
     """Outcome of one touch, and the errors of point [m] and force (relative; NaN where not located)."""
     jacobian = robot.jacobian(touch.q, touch.link, touch.point)
     tau_ext = jacobian[:3].T @ touch.force
