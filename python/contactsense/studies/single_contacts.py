@@ -1,4 +1,4 @@
-"""Single contacts with ideal measurements: what the torques determine, and how exactly (Vorndamme 2017, VI-B)."""
+"""Single contacts, ideal measurements: what the torques determine, how exactly (Vorndamme 2017, VI-B)."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def touches(robot: Robot, link: str, count: int, rng: np.random.Generator) -> It
         pose = robot.link_pose(q, link)
         points = samples.points @ pose[:3, :3].T + pose[:3, 3]
         directions = np.array([_tilt(-n, rng) for n in samples.normals @ pose[:3, :3].T])
-        free = ~blocked(robot, q, points, directions)
+        free = ~blocked(robot, q, link, points, directions)
         for point, direction in zip(points[free], directions[free], strict=True):
             yield Touch(link, q, point, direction * rng.uniform(1.0, 50.0))
             found += 1
@@ -90,7 +90,9 @@ def touches(robot: Robot, link: str, count: int, rng: np.random.Generator) -> It
                 return
 
 
-def blocked(robot: Robot, q: FloatArray, points: FloatArray, directions: FloatArray) -> NDArray[np.bool_]:
+def blocked(
+    robot: Robot, q: FloatArray, link: str, points: FloatArray, directions: FloatArray
+) -> NDArray[np.bool_]:
     """Whether the lines meet a surface before the points, coming along `directions`."""
     hit = np.zeros(len(points), dtype=bool)
     for name in robot.link_names:
@@ -98,7 +100,8 @@ def blocked(robot: Robot, q: FloatArray, points: FloatArray, directions: FloatAr
         local = (points - pose[:3, 3]) @ pose[:3, :3]
         back = -directions @ pose[:3, :3]
         hits = robot.surface(name).cast_rays(local, back)
-        hit[hits.ray[hits.distance > 1e-7]] = True
+        near = 1e-9 if name == link else -1.0  # a surface that coincides with another is neither's
+        hit[hits.ray[hits.distance > near]] = True
     return hit
 
 
@@ -113,7 +116,9 @@ def _tilt(direction: FloatArray, rng: np.random.Generator) -> FloatArray:
     return tilted
 
 
-def judge(robot: Robot, isolator: ContactIsolator, touch: Touch, threshold: float) -> tuple[str, float, float]:
+def judge(
+    robot: Robot, isolator: ContactIsolator, touch: Touch, threshold: float
+) -> tuple[str, float, float]:
     """Outcome of one touch, and the errors of point [m] and force (relative; NaN where not located)."""
     jacobian = robot.jacobian(touch.q, touch.link, touch.point)
     tau_ext = jacobian[:3].T @ touch.force

@@ -113,7 +113,7 @@ fn link(tuple: &Bound<'_, PyTuple>) -> PyResult<LinkDescription> {
     })
 }
 
-/// A description of the loaders' tuples (`contactsense._description` says what they hold).
+/// A description of the loaders' tuples (`contactsense.loading.description` says what they hold).
 pub fn description(
     name: String,
     joints: &Bound<'_, PyAny>,

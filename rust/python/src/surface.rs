@@ -22,27 +22,39 @@ pub struct PySurface {
 /// Nearest points, one row a query.
 #[pyclass(frozen, get_all, module = "contactsense._core")]
 pub struct ClosestPoints {
+    /// `(n, 3)`, link frame [m].
     points: Py<PyArray2<f64>>,
+    /// `(n, 3)`, outward.
     normals: Py<PyArray2<f64>>,
+    /// `(n,)`, unsigned [m].
     distances: Py<PyArray1<f64>>,
+    /// `(n,)`, rows of `Surface.triangles`; -1 on an exact primitive.
     triangles: Py<PyArray1<i64>>,
 }
 
 /// Every hit of a batch of rays, sorted per ray.
 #[pyclass(frozen, get_all, module = "contactsense._core")]
 pub struct RayHits {
+    /// `(k,)`, row of the query.
     ray: Py<PyArray1<i64>>,
+    /// `(k,)`, from the origin [m].
     distance: Py<PyArray1<f64>>,
+    /// `(k, 3)`, link frame [m].
     point: Py<PyArray2<f64>>,
+    /// `(k, 3)`, outward.
     normal: Py<PyArray2<f64>>,
+    /// `(k,)`; -1 on an exact primitive.
     triangle: Py<PyArray1<i64>>,
 }
 
 /// Random points of a surface.
 #[pyclass(frozen, get_all, module = "contactsense._core")]
 pub struct SurfaceSamples {
+    /// `(n, 3)`, link frame [m].
     points: Py<PyArray2<f64>>,
+    /// `(n, 3)`, outward.
     normals: Py<PyArray2<f64>>,
+    /// `(n,)`; -1 on an exact primitive.
     triangles: Py<PyArray1<i64>>,
 }
 
@@ -59,11 +71,13 @@ fn array(vector: &Vector3<f64>) -> [f64; 3] {
 
 #[pymethods]
 impl PySurface {
+    /// Vertices, `(n, 3)`, link frame [m]; of exact primitives a tessellation, for display.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         from_rows(py, self.core(py)?.vertices().iter().copied())
     }
 
+    /// Vertex indices, `(m, 3)`, counter-clockwise seen from outside.
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
         use numpy::PyArrayMethods;
@@ -72,16 +86,21 @@ impl PySurface {
         PyArray1::from_vec(py, flat).reshape([triangles.len(), 3])
     }
 
+    /// Sum of the parts' areas [m^2]; where parts overlap, both count.
     #[getter]
     fn area(&self, py: Python<'_>) -> PyResult<f64> {
         Ok(self.core(py)?.area())
     }
 
+    /// Whether every part is closed.
     #[getter]
     fn watertight(&self, py: Python<'_>) -> PyResult<bool> {
         Ok(self.core(py)?.watertight())
     }
 
+    /// The nearest surface point of each query; the minimum over the link's parts.
+    ///
+    /// `points` is `(n, 3)` in the link frame [m]. Distances are unsigned. Raises `InputError` that names the argument.
     fn closest_points(&self, py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<ClosestPoints> {
         let surface = self.core(py)?;
         let points = rows::<3>("points", points)?;
@@ -95,6 +114,10 @@ impl PySurface {
         })
     }
 
+    /// Every hit of each ray, sorted by distance per ray. Watertight: a closed mesh is entered as often as left.
+    ///
+    /// `origins` and `directions` are `(n, 3)` in the link frame; directions need not be unit, distances are in metres.
+    /// Hits inside another closed part of the link are left out. Raises `InputError` that names the argument.
     fn cast_rays(
         &self,
         py: Python<'_>,
@@ -125,6 +148,9 @@ impl PySurface {
         })
     }
 
+    /// `n` random points, uniform by area over the exposed surface; the same for the same seed.
+    ///
+    /// A larger `n` appends to the same points.
     #[pyo3(signature = (n, seed=0))]
     fn sample(&self, py: Python<'_>, n: usize, seed: u64) -> PyResult<SurfaceSamples> {
         let found = self.core(py)?.sample(n, seed);

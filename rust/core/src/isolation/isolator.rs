@@ -20,6 +20,8 @@ const CANDIDATES: usize = 512;
 /// A single force must explain the torque but for this share, or for a few thresholds.
 const UNEXPLAINED_SHARE: f64 = 0.05;
 const UNEXPLAINED_THRESHOLDS: f64 = 3.0;
+/// A misfit that chance brings about once in a thousand times [thresholds].
+const EXACT_FIT: f64 = 1e-3;
 
 /// Settings of a [`ContactIsolator`].
 #[derive(Debug, Clone)]
@@ -129,6 +131,9 @@ impl ContactIsolator {
             let wrench = estimate_wrench(&self.robot, kinematics, body, tau_ext, &self.threshold);
             self.isolation.rank_deficit = 6 - wrench.rank;
             if wrench.rank < 6 {
+                if body == tip && wrench.rank == 5 && self.isolate_behind(kinematics, tip, tau_ext) {
+                    return;
+                }
                 self.name_link(tip);
                 // The torques do not exclude the links behind: a line can cross their joints' axes.
                 self.bodies.grow_all(&self.robot, tip);
@@ -157,6 +162,30 @@ impl ContactIsolator {
         }
         // Two links that take turns: the link is open.
         self.name_link(tip);
+    }
+
+    /// The torques up to `tip` leave one component of the wrench open. With the silence of the joints behind, a body
+    /// there may be determined: a force on it whose line crosses those joints' axes. Only an exact fit tells it from
+    /// a force on `tip`, where such a coincidence has no reason (with more components open, it often has).
+    fn isolate_behind(&mut self, kinematics: &Kinematics, tip: usize, tau_ext: &[f64]) -> bool {
+        for body in tip + 1..self.robot.body_count() {
+            if !self.robot.chain(body).contains(&tip) || self.robot.links_of_body(body).is_empty() {
+                continue;
+            }
+            let wrench = estimate_wrench(&self.robot, kinematics, body, tau_ext, &self.threshold);
+            if wrench.rank < 6 || wrench.misfit() > EXACT_FIT {
+                continue;
+            }
+            self.bodies.grow(&self.robot, kinematics, body, &wrench, tau_ext, &self.threshold);
+            if let Some(hit) = self.cast(kinematics, &wrench) {
+                if self.robot.links[hit.link].body == body {
+                    self.isolation.rank_deficit = 0;
+                    self.report_point(kinematics, &wrench, &hit, tau_ext);
+                    return true;
+                }
+            }
+        }
+        false
     }
 
     /// Casts the line of action on the links in question; the first hit where the force enters.

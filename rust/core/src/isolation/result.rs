@@ -36,7 +36,8 @@ pub struct Contact {
     pub wrench: Vector6<f64>,
     /// False: the link is known, the point is not.
     pub located: bool,
-    /// Standard deviation of the point on the surface, if a torque's is a third of its threshold [m].
+    /// Standard deviation of the point on the surface [m]. A torque's is taken as a third of its threshold, or as
+    /// less where the torques agree better than that.
     pub point_std: f64,
     /// This contact's part of [`Isolation::candidates`], best first.
     pub candidates: Range<usize>,

@@ -1,6 +1,6 @@
 //! The wrench on one body by the weighted pseudoinverse of its Jacobian (Vorndamme 2017, eq. 23).
 
-use nalgebra::{Matrix3, Matrix3x6, Matrix6, SMatrix, Vector3, Vector6};
+use nalgebra::{Matrix3x6, Matrix6, SMatrix, Vector3, Vector6};
 
 use crate::robot::motion::{motion_axis, split, stack};
 use crate::robot::{Kinematics, Robot};
@@ -11,8 +11,11 @@ const LEVER: f64 = 0.3;
 const RANK_TOLERANCE: f64 = 1e-7;
 /// An SVD of a finite 6 x 6 matrix converges within a few sweeps; this bounds the time.
 const SVD_ITERATIONS: usize = 200;
-/// Thresholds are set well above the noise: at three standard deviations of a torque.
-const THRESHOLD_IN_DEVIATIONS: f64 = 3.0;
+/// Thresholds are set well above the noise: a torque's standard deviation is a third at most.
+const DEVIATION_AT_MOST: f64 = 1.0 / 3.0;
+/// By how much a standard deviation estimated from 1, 2, ... redundant torques can be too small (in 99 of 100 cases,
+/// from the chi distribution).
+const CAUTION: [f64; 5] = [80.0, 10.0, 5.1, 3.7, 3.0];
 /// Rows that one factorisation takes in: six of the triangle so far and six new ones.
 const BLOCK: usize = 12;
 
@@ -25,8 +28,11 @@ pub(super) struct WrenchEstimate {
     /// Where the moment refers to, from the kinematics' origin.
     pub reference: Vector3<f64>,
     pub rank: usize,
-    /// `root * root^T` is the covariance of the wrench.
+    /// `root * root^T` is the covariance of the wrench if each torque's standard deviation is its threshold.
     root: Matrix6<f64>,
+    /// Sum of squares that no wrench explains, in thresholds, and how many torques are redundant.
+    unexplained: f64,
+    redundant: usize,
 }
 
 /// Velocity at `reference` and rotation that one unit of a joint's velocity gives the bodies behind it.
@@ -52,11 +58,11 @@ pub(super) fn estimate_wrench(
 ) -> WrenchEstimate {
     let reference = kinematics.bodies[body].position;
     let mut rows = SMatrix::<f64, BLOCK, 7>::zeros();
-    let mut filled = 0;
+    let (mut filled, mut count, mut unexplained) = (0, 0, 0.0);
     for &joint in robot.chain(body) {
         for (column, k) in robot.velocity_range(joint).enumerate() {
             if filled == BLOCK {
-                rows = triangle(rows);
+                rows = triangle(rows, &mut unexplained);
                 filled = 6;
             }
             let weight = 1.0 / threshold[k];
@@ -67,9 +73,10 @@ pub(super) fn estimate_wrench(
             }
             rows[(filled, 6)] = torque[k] * weight;
             filled += 1;
+            count += 1;
         }
     }
-    let rows = triangle(rows);
+    let rows = triangle(rows, &mut unexplained);
     let factor: Matrix6<f64> = rows.fixed_view::<6, 6>(0, 0).into_owned();
     let rhs: Vector6<f64> = rows.fixed_view::<6, 1>(0, 6).into_owned();
     let (solution, mut root, rank) = match full_rank_inverse(&factor) {
@@ -79,14 +86,16 @@ pub(super) fn estimate_wrench(
     for i in 3..6 {
         root.row_mut(i).unscale_mut(LEVER);
     }
-    root /= THRESHOLD_IN_DEVIATIONS;
     let (force, moment) = split(&solution);
-    WrenchEstimate { force, moment: moment / LEVER, reference, rank, root }
+    let redundant = usize::saturating_sub(count, 6);
+    WrenchEstimate { force, moment: moment / LEVER, reference, rank, root, unexplained, redundant }
 }
 
-/// The triangle of a QR factorisation in the upper rows, zeros below.
-fn triangle(rows: SMatrix<f64, BLOCK, 7>) -> SMatrix<f64, BLOCK, 7> {
+/// The triangle of a QR factorisation in the upper rows, zeros below; what the right side leaves over is added to
+/// `unexplained`.
+fn triangle(rows: SMatrix<f64, BLOCK, 7>, unexplained: &mut f64) -> SMatrix<f64, BLOCK, 7> {
     let upper = rows.qr().r();
+    *unexplained += upper[(6, 6)] * upper[(6, 6)];
     let mut out = SMatrix::<f64, BLOCK, 7>::zeros();
     out.fixed_view_mut::<6, 7>(0, 0).copy_from(&upper.fixed_view::<6, 7>(0, 0));
     out
@@ -135,7 +144,25 @@ impl WrenchEstimate {
         let across = self.force.cross_matrix() / self.force.norm_squared();
         let mut map = Matrix3x6::zeros();
         map.fixed_view_mut::<3, 3>(0, 0).copy_from(&(-(across * lever)));
-        map.fixed_view_mut::<3, 3>(0, 3).copy_from(&(across * Matrix3::identity()));
-        (map * self.root).norm()
+        map.fixed_view_mut::<3, 3>(0, 3).copy_from(&across);
+        (map * self.root).norm() * self.torque_deviation()
+    }
+
+    /// Standard deviation of a torque in thresholds: as the redundant torques and the absence of a moment along the
+    /// force show it, with caution where they are few; a third at most.
+    fn torque_deviation(&self) -> f64 {
+        let checks = self.redundant + 1;
+        let caution = CAUTION[checks.min(CAUTION.len()) - 1];
+        (self.misfit() * caution).min(DEVIATION_AT_MOST)
+    }
+
+    /// Root mean square of what contradicts a single force without moment, in thresholds.
+    pub fn misfit(&self) -> f64 {
+        let size = self.force.norm();
+        let along = self.force.dot(&self.moment) / size;
+        let gradient = stack(&(self.moment / size), &(self.force / size));
+        let deviation = self.root.tr_mul(&gradient).norm();
+        let moment = if deviation > 0.0 { along / deviation } else { 0.0 };
+        ((self.unexplained + moment * moment) / (self.redundant + 1) as f64).sqrt()
     }
 }

@@ -84,13 +84,13 @@ fn to_bound(squared: f64) -> f32 {
 #[inline]
 fn ordered_children(node: &Node, query: &[f32; 3]) -> [u64; 4] {
     let mut squared = [0f32; 4];
-    for k in 0..3 {
-        for lane in 0..4 {
-            let below = node.low[k][lane] - query[k];
-            let above = query[k] - node.high[k][lane];
+    for (k, &x) in query.iter().enumerate() {
+        for (lane, squared) in squared.iter_mut().enumerate() {
+            let below = node.low[k][lane] - x;
+            let above = x - node.high[k][lane];
             let gap = if below > above { below } else { above };
             let gap = if gap > 0.0 { gap } else { 0.0 };
-            squared[lane] += gap * gap;
+            *squared += gap * gap;
         }
     }
     let mut keys = [0u64; 4];

@@ -5,7 +5,9 @@
 
 mod build;
 mod closest;
+mod collada;
 mod components;
+mod line;
 mod load;
 mod mesh;
 mod part;
@@ -23,7 +25,7 @@ mod winding;
 #[cfg(test)]
 mod tests;
 
-pub use load::load_mesh;
+pub use load::{load_mesh, VerticesAndTriangles};
 pub use part::{Geometry, Part};
 
 use nalgebra::Vector3;
@@ -35,11 +37,11 @@ use sample::Sampler;
 /// The point of a surface nearest to a query.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClosestPoint {
-    /// The nearest point [m].
+    /// The nearest point (m).
     pub point: Vector3<f64>,
     /// Outward unit normal of the face that holds `point`; on an edge, of one of its faces.
     pub normal: Vector3<f64>,
-    /// Euclidean distance from the query, never negative [m].
+    /// Euclidean distance from the query, never negative (m).
     pub distance: f64,
     /// Index into [`Surface::triangles`]; -1 on an exact primitive.
     pub triangle: i64,
@@ -48,9 +50,9 @@ pub struct ClosestPoint {
 /// One crossing of a line with a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RayHit {
-    /// Where along the line, from its origin [m]; negative behind it.
+    /// Where along the line, from its origin (m); negative behind it.
     pub distance: f64,
-    /// `origin + distance * direction` [m].
+    /// `origin + distance * direction` (m).
     pub point: Vector3<f64>,
     /// Outward unit normal.
     pub normal: Vector3<f64>,
@@ -66,7 +68,7 @@ pub struct RayHit {
 /// One sample of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfacePoint {
-    /// The sampled point [m].
+    /// The sampled point (m).
     pub point: Vector3<f64>,
     /// Outward unit normal.
     pub normal: Vector3<f64>,
@@ -98,7 +100,7 @@ impl Surface {
         build::surface(parts)
     }
 
-    /// Vertices of all parts [m]; those of a primitive belong to a tessellation for display.
+    /// Vertices of all parts (m); those of a primitive belong to a tessellation for display.
     pub fn vertices(&self) -> &[[f64; 3]] {
         &self.vertices
     }
@@ -108,7 +110,7 @@ impl Surface {
         &self.triangles
     }
 
-    /// Sum of the parts' areas, exact for primitives [m^2]. Where parts overlap, both count.
+    /// Sum of the parts' areas, exact for primitives (m^2). Where parts overlap, both count.
     pub fn area(&self) -> f64 {
         self.sampler.area()
     }
@@ -118,7 +120,7 @@ impl Surface {
         self.solids.iter().all(Solid::closed)
     }
 
-    /// Centre and radius of a sphere around all parts [m].
+    /// Centre and radius of a sphere around all parts (m).
     pub fn bounding_sphere(&self) -> (Vector3<f64>, f64) {
         (self.center, self.radius)
     }
@@ -155,7 +157,7 @@ impl Surface {
 
     /// Appends every crossing of a line with the surface to `hits`, nearest first; returns whether all fitted.
     ///
-    /// `direction` is a unit vector; crossings before `t_min` [m] are left out (minus infinity: a full line). Hits
+    /// `direction` is a unit vector; crossings before `t_min` (m) are left out (minus infinity: a full line). Hits
     /// inside another closed part are left out too, so that those of closed parts come in pairs in and out.
     ///
     /// Never allocates: at the capacity of `hits` it stops and returns `false`. Capacity is needed for the hits of

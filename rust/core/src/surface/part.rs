@@ -8,38 +8,38 @@ use super::ClosestPoint;
 use crate::spatial::Pose;
 use crate::{Error, Result};
 
-/// A shape in its own frame [m].
+/// A shape in its own frame (m).
 #[derive(Debug, Clone, PartialEq)]
 pub enum Geometry {
     /// Triangles, counter-clockwise seen from outside (repaired where they are not).
     Mesh {
-        /// Vertices [m].
+        /// Vertices (m).
         vertices: Vec<[f64; 3]>,
         /// Indices into `vertices`.
         triangles: Vec<[u32; 3]>,
     },
     /// An axis-aligned box around the origin.
     Box {
-        /// Half the lengths of the edges [m].
+        /// Half the lengths of the edges (m).
         half_extents: [f64; 3],
     },
     /// A cylinder around the z axis, centred.
     Cylinder {
-        /// Radius [m].
+        /// Radius (m).
         radius: f64,
-        /// Half the length [m].
+        /// Half the length (m).
         half_length: f64,
     },
     /// A sphere around the origin.
     Sphere {
-        /// Radius [m].
+        /// Radius (m).
         radius: f64,
     },
     /// A cylinder around the z axis, centred, with half spheres on its ends.
     Capsule {
-        /// Radius [m].
+        /// Radius (m).
         radius: f64,
-        /// Half the length of the cylinder, without the half spheres [m].
+        /// Half the length of the cylinder, without the half spheres (m).
         half_length: f64,
     },
 }

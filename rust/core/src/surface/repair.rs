@@ -29,7 +29,7 @@ pub(super) fn repair(
 
     let loose = used.iter().filter(|used| !**used).count();
     say(remarks, loose, "vertex in no triangle dropped", "vertices in no triangle dropped");
-    let (vertices, index) = compact(vertices, &used, &mut triangles).weld(tolerance);
+    let (vertices, index) = weld::weld(&compact(vertices, &used, &mut triangles), tolerance);
     triangles.iter_mut().for_each(|t| *t = t.map(|v| index[v as usize]));
     let merged = index.len() - vertices.len();
     say(remarks, merged, "duplicate vertex merged", "duplicate vertices merged");
@@ -69,7 +69,7 @@ pub(super) fn repair(
     }
     let mut used = vec![false; vertices.len()];
     triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
-    let vertices = compact(vertices, &used, &mut triangles).0;
+    let vertices = compact(vertices, &used, &mut triangles);
     Ok(Repaired { vertices, triangles, closed })
 }
 
@@ -79,16 +79,8 @@ fn say(remarks: &mut Vec<String>, count: usize, one: &str, many: &str) {
     }
 }
 
-struct Compact(Vec<Vector3<f64>>);
-
-impl Compact {
-    fn weld(&self, tolerance: f64) -> (Vec<Vector3<f64>>, Vec<u32>) {
-        weld::weld(&self.0, tolerance)
-    }
-}
-
 /// Drops unused vertices and renumbers the triangles.
-fn compact(vertices: Vec<Vector3<f64>>, used: &[bool], triangles: &mut [[u32; 3]]) -> Compact {
+fn compact(vertices: Vec<Vector3<f64>>, used: &[bool], triangles: &mut [[u32; 3]]) -> Vec<Vector3<f64>> {
     let mut next = 0;
     let index: Vec<u32> = used
         .iter()
@@ -99,5 +91,5 @@ fn compact(vertices: Vec<Vector3<f64>>, used: &[bool], triangles: &mut [[u32; 3]
         })
         .collect();
     triangles.iter_mut().for_each(|t| *t = t.map(|v| index[v as usize]));
-    Compact(vertices.into_iter().zip(used).filter(|(_, used)| **used).map(|(v, _)| v).collect())
+    vertices.into_iter().zip(used).filter(|(_, used)| **used).map(|(v, _)| v).collect()
 }

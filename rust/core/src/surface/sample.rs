@@ -17,7 +17,7 @@ pub(super) struct Sampler {
     parts: Vec<f64>,
     /// Of each mesh part's triangles; empty for primitives.
     triangles: Vec<Vec<f64>>,
-    /// Nearer than this is on a face, not inside [m].
+    /// Nearer than this is on a face, not inside (m).
     tolerance: f64,
 }
 

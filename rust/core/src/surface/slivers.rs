@@ -35,8 +35,8 @@ fn flat(vertices: &[Vector3<f64>], t: [u32; 3], tolerance: f64) -> Option<usize>
     let [a, b, c] = t.map(|v| vertices[v as usize]);
     let lengths = [(c - b).norm(), (a - c).norm(), (b - a).norm()];
     let longest = (0..3).max_by(|&i, &j| lengths[i].total_cmp(&lengths[j]))?;
-    let height = (b - a).cross(&(c - a)).norm() / lengths[longest];
-    (!(height > tolerance)).then_some(longest)
+    let sound = (b - a).cross(&(c - a)).norm() > tolerance * lengths[longest];
+    (!sound).then_some(longest)
 }
 
 /// Takes the flat triangles out and splits their neighbours.

@@ -14,6 +14,9 @@ const BINS: usize = 12;
 /// Enlargement of boxes relative to the mesh's radius: well above single-precision rounding.
 const MARGIN: f64 = 2e-6;
 
+/// Where unused boxes are, as points: finite, so that no arithmetic on them is undefined.
+const NOWHERE: f32 = 1e30;
+
 /// Four boxes side by side.
 #[derive(Debug, Clone)]
 pub(super) struct Node {
@@ -113,8 +116,8 @@ impl Tree {
         assert!(depth < MAX_DEPTH, "median splits bound the depth");
         let index = self.nodes.len();
         self.nodes.push(Node {
-            low: [[f32::INFINITY; 4]; 3],
-            high: [[f32::NEG_INFINITY; 4]; 3],
+            low: [[NOWHERE; 4]; 3],
+            high: [[NOWHERE; 4]; 3],
             child: [Child::leaf(0, 0); 4],
         });
         let by_area = depth < SURFACE_AREA_DEPTH;
@@ -179,7 +182,7 @@ fn split_by_area(items: &mut [Item], low: [f64; 3], high: [f64; 3]) -> Option<us
     let mut best: Option<(f64, usize, usize)> = None;
     for axis in 0..3 {
         let extent = high[axis] - low[axis];
-        if !(extent > 0.0) {
+        if extent <= 0.0 {
             continue;
         }
         let mut bins = [(Bounds::EMPTY, 0usize); BINS];

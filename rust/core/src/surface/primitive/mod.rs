@@ -17,7 +17,7 @@ use crate::spatial::Pose;
 /// Segments of a full circle in a tessellation.
 const SEGMENTS: usize = 48;
 
-/// A primitive in its own frame [m].
+/// A primitive in its own frame (m).
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Primitive {
     Box(Vector3<f64>),
@@ -162,7 +162,7 @@ impl Placed {
         };
         for (crossing, entering) in crossings.into_iter().zip([true, false]) {
             let distance = crossing.distance + shift;
-            if !(distance >= t_min) {
+            if distance < t_min {
                 continue;
             }
             if hits.len() == hits.capacity() {

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from ._description import name_list
-from ._urdf_tree import UrdfTree
+from .description import name_list
+from .urdf_tree import UrdfTree
 
 
 def oddities(tree: UrdfTree) -> list[str]:

@@ -8,7 +8,7 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import ModelError
+from ..errors import ModelError
 
 FloatArray: TypeAlias = NDArray[np.float64]
 JointKind: TypeAlias = Literal["free_flyer", "revolute", "continuous", "prismatic"]

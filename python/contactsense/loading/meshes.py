@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
-from .errors import GeometryError, InputError
+from ..errors import GeometryError, InputError
 
 MESH_SUFFIXES = (".stl", ".obj", ".dae")
 

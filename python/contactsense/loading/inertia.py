@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from ._description import FloatArray, JointTuple, LinkTuple, name_list
-from .errors import ModelError
+from ..errors import ModelError
+from .description import FloatArray, JointTuple, LinkTuple, name_list
 
 # A principal moment is clearly negative when below both: published models have rounding errors below the
 # first, and inertias moved to the wrong point (up to a fifth of the largest moment) below the second.

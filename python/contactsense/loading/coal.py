@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ._description import GeometryKind
-from .errors import GeometryError
+from ..errors import GeometryError
+from .description import GeometryKind
 
 _SUPPORTED = "triangle meshes (BVHModel), Convex, Box, Cylinder, Sphere, Capsule"
 

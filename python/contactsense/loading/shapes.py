@@ -6,10 +6,10 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from ._description import GeometryTuple
-from ._meshes import MeshFinder
-from ._numbers import number_attribute, origin, parse_numbers, placement
-from .errors import GeometryError
+from ..errors import GeometryError
+from .description import GeometryTuple
+from .meshes import MeshFinder
+from .xml_numbers import number_attribute, origin, parse_numbers, placement
 
 _SHAPES = "mesh, box, cylinder, sphere, capsule"
 

@@ -8,8 +8,8 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from ._description import FloatArray
-from .errors import ContactSenseError
+from ..errors import ContactSenseError
+from .description import FloatArray
 
 # Narrower than float(): no "nan", "inf", "1_000" or digits of other scripts.
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)

@@ -12,9 +12,9 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from ._description import SUPPORTED_JOINTS, FloatArray, name_list
-from ._numbers import number_attribute, origin, parse_numbers
-from .errors import ModelError
+from ..errors import ModelError
+from .description import SUPPORTED_JOINTS, FloatArray, name_list
+from .xml_numbers import number_attribute, origin, parse_numbers
 
 MOVING = ("revolute", "continuous", "prismatic")
 

@@ -13,15 +13,15 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from ._description import FloatArray, LinkTuple, RobotDescription, check_finite
-from ._inertia import check_bodies, check_inertias, check_mass_matrix
-from ._locked import LockedJoints, lock_joints
-from ._meshes import MeshFinder, PackageDirs
-from ._oddities import oddities
-from ._pinocchio import joints_of, links_of
-from ._shapes import link_shapes
-from ._urdf_tree import UrdfTree, read_urdf
-from .errors import InputError, ModelError
+from ..errors import InputError, ModelError
+from .description import FloatArray, LinkTuple, RobotDescription, check_finite
+from .inertia import check_bodies, check_inertias, check_mass_matrix
+from .locked import LockedJoints, lock_joints
+from .meshes import MeshFinder, PackageDirs
+from .oddities import oddities
+from .pinocchio_model import joints_of, links_of
+from .shapes import link_shapes
+from .urdf_tree import UrdfTree, read_urdf
 
 _ROOT_JOINT = "root_joint"  # Pinocchio's name for the joint it adds
 

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from ._coal import shape_of
-from ._description import GeometryTuple, LinkTuple, RobotDescription, check_finite
-from ._inertia import check_bodies, check_inertias, check_mass_matrix
-from ._pinocchio import is_body, joints_of, links_of
-from .errors import InputError, ModelError
+from ..errors import InputError, ModelError
+from .coal import shape_of
+from .description import GeometryTuple, LinkTuple, RobotDescription, check_finite
+from .inertia import check_bodies, check_inertias, check_mass_matrix
+from .pinocchio_model import is_body, joints_of, links_of
 
 
 def describe_pinocchio(model: Any, geometry_model: Any) -> RobotDescription:

@@ -8,9 +8,9 @@ from typing import Any, SupportsFloat, TypeAlias
 
 import pinocchio as pin
 
-from ._description import name_list
-from ._urdf_tree import UrdfJoint, UrdfTree
-from .errors import InputError
+from ..errors import InputError
+from .description import name_list
+from .urdf_tree import UrdfJoint, UrdfTree
 
 LockedJoints: TypeAlias = Mapping[str, SupportsFloat] | Iterable[str] | None
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ._description import SUPPORTED_JOINTS, FloatArray, JointKind, JointTuple, LinkTuple
-from .errors import ModelError
+from ..errors import ModelError
+from .description import SUPPORTED_JOINTS, FloatArray, JointKind, JointTuple, LinkTuple
 
 _KINDS: dict[str, JointKind] = {
     "JointModelFreeFlyer": "free_flyer",

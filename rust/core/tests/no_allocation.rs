@@ -1,0 +1,136 @@
+//! `update` and `isolate` allocate nothing after the first call. One test: the counter is the process's.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::hint::black_box;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use contactsense::isolation::{ContactIsolator, IsolatorOptions};
+use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
+use contactsense::observer::MomentumObserver;
+use contactsense::robot::Robot;
+use nalgebra::Vector3;
+
+mod common;
+
+static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
+
+struct Counting;
+
+// SAFETY: every call is handed on to the system's allocator unchanged; the counter is atomic.
+#[allow(unsafe_code)]
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Allocations of `work`; the least of three runs, since the test harness has threads of its own.
+fn allocations(mut work: impl FnMut()) -> usize {
+    (0..3)
+        .map(|_| {
+            let before = ALLOCATIONS.load(Ordering::Relaxed);
+            work();
+            ALLOCATIONS.load(Ordering::Relaxed) - before
+        })
+        .min()
+        .expect("three runs")
+}
+
+/// External torques of touches on every link, and of two links at once.
+fn touches(robot: &Robot, q: &[f64]) -> Vec<Vec<f64>> {
+    let mut torques = vec![];
+    for &link in robot.touchable_links() {
+        let surface = robot.links()[link].surface.as_ref().expect("a touchable link");
+        for sample in surface.sample(5, 1) {
+            let pose = robot.link_pose(q, link).expect("a valid link");
+            let point = pose.transform_point(&sample.point);
+            let force = pose.rotation * (-20.0 * sample.normal + Vector3::new(3.0, -2.0, 1.0));
+            torques.push(common::torque_of(robot, q, link, point.into(), force));
+        }
+    }
+    let both = torques[0].iter().zip(&torques[torques.len() - 1]).map(|(a, b)| a + b).collect();
+    torques.push(both);
+    torques
+}
+
+#[test]
+fn a_tick_allocates_nothing() {
+    assert!(allocations(|| drop(black_box(Vec::<u8>::with_capacity(100)))) > 0, "the counter is dead");
+
+    for robot in [common::arm(), common::humanoid()] {
+        let q = common::configuration(&robot, 0.4);
+        let v = common::numbers(robot.nv(), 0.1);
+        let still = vec![0.0; robot.nv()];
+        let tau = common::numbers(robot.nv() - robot.unactuated(), 0.7);
+
+        let mut observer = MomentumObserver::new(robot.clone(), 1e-3, &[100.0]).expect("valid options");
+        let work = || {
+            for _ in 0..50 {
+                black_box(observer.update(&q, &v, &tau, Some(&tau), None).expect("valid input"));
+                black_box(observer.acceleration());
+            }
+            assert!(observer.update(&q[1..], &v, &tau, None, None).is_err());
+        };
+        // The message of an error may allocate; that is no tick of the control loop.
+        assert!(allocations(work) <= 1, "observer of {}", robot.name());
+
+        let torques = touches(&robot, &q);
+        let mut isolator =
+            ContactIsolator::new(robot.clone(), &IsolatorOptions::default()).expect("valid options");
+        let (mut located, mut open) = (0, 0);
+        let work = || {
+            for torque in &torques {
+                let isolation = isolator.isolate(&q, torque).expect("valid input");
+                located += isolation.contacts.iter().filter(|contact| contact.located).count();
+                open += isolation.contacts.iter().filter(|contact| !contact.located).count();
+            }
+        };
+        assert_eq!(allocations(work), 0, "isolator of {}", robot.name());
+        assert!(located > 0 && open > 0, "both branches are run: {located}, {open}");
+
+        let options = MonitorOptions {
+            dt: 1e-3,
+            observer_gain: vec![500.0],
+            isolation: IsolatorOptions { torque_threshold: vec![0.01], ..IsolatorOptions::default() },
+            hold_time: 0.01,
+            bias_time_constant: Some(0.02),
+            bias_settle_time: Some(5.0),
+        };
+        let mut monitor = ContactMonitor::new(robot.clone(), &options).expect("valid options");
+        let weight = robot.inverse_dynamics(&q, &still, &still).expect("valid input");
+        let mut report = ContactReport::default();
+        let mut seen = 0;
+        let mut tick = |monitor: &mut ContactMonitor, torque: Option<&Vec<f64>>| {
+            let mut tau = weight.clone();
+            if let Some(torque) = torque {
+                tau.iter_mut().zip(torque).for_each(|(tau, ext)| *tau -= ext);
+            }
+            let before = ALLOCATIONS.load(Ordering::Relaxed);
+            monitor.update(&q, &still, &tau, None).expect("valid input");
+            let after = ALLOCATIONS.load(Ordering::Relaxed);
+            monitor.report_into(&mut report);
+            seen += usize::from(!report.isolation.contacts.is_empty());
+            after - before
+        };
+        for _ in 0..30 {
+            tick(&mut monitor, None);
+        }
+        let contact = allocations(|| ()) + (0..40).map(|_| tick(&mut monitor, torques.last())).sum::<usize>();
+        let free = (0..40).map(|_| tick(&mut monitor, None)).sum::<usize>();
+        assert_eq!((contact, free), (0, 0), "monitor of {}", robot.name());
+        assert!(seen > 30, "the monitor saw the contact: {seen}");
+    }
+}
