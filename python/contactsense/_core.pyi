@@ -1,6 +1,7 @@
 """Types of the compiled core; its docstrings say shapes, units, frames and errors."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from os import PathLike
 from typing import Any, Final, Literal, final
 
 import numpy as np
@@ -24,6 +25,15 @@ __all__ = [
 ]
 
 build_profile: Final[Literal["debug", "release"]]
+
+def _robot_from_urdf(
+    path: str | PathLike[str],
+    package_dirs: Sequence[str | PathLike[str]] = ...,
+    floating_base: bool = False,
+    locked: Sequence[tuple[str, float | None]] = ...,
+    geometry: str = "collision",
+    gravity: Sequence[float] = ...,
+) -> Robot: ...
 
 @disjoint_base
 class Robot:

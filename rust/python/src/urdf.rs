@@ -1,6 +1,5 @@
 //! The core's own URDF reader, for comparison with the package's.
 
-use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -11,16 +10,16 @@ use pyo3::prelude::*;
 use crate::errors::{input, to_python};
 use crate::robot::PyRobot;
 
-/// A robot read without Pinocchio; `locked` is `{name: position or None}`.
+/// A robot read without Pinocchio; `locked` are pairs of a name and a position or `None`.
 #[pyfunction]
-#[pyo3(signature = (path, package_dirs=vec![], floating_base=false, locked=HashMap::new(), geometry="collision",
+#[pyo3(signature = (path, package_dirs=vec![], floating_base=false, locked=vec![], geometry="collision",
                     gravity=[0.0, 0.0, -9.81]))]
 pub fn _robot_from_urdf(
     py: Python<'_>,
     path: PathBuf,
     package_dirs: Vec<PathBuf>,
     floating_base: bool,
-    locked: HashMap<String, Option<f64>>,
+    locked: Vec<(String, Option<f64>)>,
     geometry: &str,
     gravity: [f64; 3],
 ) -> PyResult<PyRobot> {
@@ -34,7 +33,7 @@ pub fn _robot_from_urdf(
     let options = UrdfOptions {
         package_dirs,
         floating_base,
-        locked_joints: locked.into_iter().collect(),
+        locked_joints: locked,
         geometry,
         gravity: Vector3::from(gravity),
     };

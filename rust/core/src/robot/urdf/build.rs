@@ -1,7 +1,5 @@
 //! Bodies from links: what is fixed to one joint is one body.
 
-use std::collections::HashMap;
-
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use urdf_rs::{Inertial, JointType};
 
@@ -11,11 +9,7 @@ use crate::robot::description::{JointDescription, JointKind, LinkDescription, Ro
 use crate::spatial::Pose;
 
 /// Joints, bodies and link frames, the latter in the order of the tree's visits and without shapes.
-pub(super) fn bodies(
-    tree: &Tree,
-    locked: &HashMap<String, f64>,
-    floating_base: bool,
-) -> Result<RobotDescription> {
+pub(super) fn bodies(tree: &Tree, locked: &[(String, f64)], floating_base: bool) -> Result<RobotDescription> {
     let mut joints: Vec<JointDescription> = vec![];
     let mut links: Vec<LinkDescription> = Vec::with_capacity(tree.visits.len());
     for visit in &tree.visits {
@@ -29,9 +23,9 @@ pub(super) fn bodies(
                 let parent = &links[visit.parent];
                 let here = parent.placement.compose(&pose(&urdf.origin));
                 let axis = Vector3::from(*urdf.axis.xyz);
-                match (kind(urdf)?, locked.get(&urdf.name)) {
+                match (kind(urdf)?, locked.iter().find(|(name, _)| *name == urdf.name)) {
                     (None, _) => (parent.joint, here),
-                    (Some(kind), Some(position)) => {
+                    (Some(kind), Some((_, position))) => {
                         (parent.joint, here.compose(&motion(kind, &axis, *position)))
                     }
                     (Some(kind), None) => {

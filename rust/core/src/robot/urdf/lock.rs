@@ -1,16 +1,14 @@
 //! Joints held at a fixed position.
 
-use std::collections::HashMap;
-
 use urdf_rs::JointType;
 
 use super::name_list;
 use super::tree::Tree;
 use crate::error::{Error, Result};
 
-/// The position of each locked joint; [`Error::Input`] lists the valid names.
-pub(super) fn positions(tree: &Tree, locked: &[(String, Option<f64>)]) -> Result<HashMap<String, f64>> {
-    let mut positions = HashMap::new();
+/// The position of each locked joint, in the order given; [`Error::Input`] lists the valid names.
+pub(super) fn positions(tree: &Tree, locked: &[(String, Option<f64>)]) -> Result<Vec<(String, f64)>> {
+    let mut positions: Vec<(String, f64)> = Vec::new();
     for (name, position) in locked {
         if !tree.moving().any(|joint| joint.name == *name) {
             let valid: Vec<String> = tree.moving().map(|joint| format!("'{}'", joint.name)).collect();
@@ -25,22 +23,24 @@ pub(super) fn positions(tree: &Tree, locked: &[(String, Option<f64>)]) -> Result
                 "locked_joints: the position of '{name}' must be a finite number, not {position}"
             )));
         }
-        positions.insert(name.clone(), position);
+        match positions.iter_mut().find(|(known, _)| known == name) {
+            Some((_, known)) => *known = position,
+            None => positions.push((name.clone(), position)),
+        }
     }
     Ok(positions)
 }
 
 /// A warning of positions outside the joints' limits.
-pub(super) fn outside_limits(tree: &Tree, locked: &HashMap<String, f64>) -> Option<String> {
-    let outside: Vec<&str> = tree
-        .moving()
-        .filter(|joint| joint.joint_type != JointType::Continuous)
-        .filter(|joint| {
-            let position = locked.get(&joint.name);
-            position.is_some_and(|position| !(joint.limit.lower..=joint.limit.upper).contains(position))
+pub(super) fn outside_limits(tree: &Tree, locked: &[(String, f64)]) -> Option<String> {
+    let is_outside = |name: &str, position: f64| {
+        tree.moving().any(|joint| {
+            let range = joint.limit.lower..=joint.limit.upper;
+            joint.name == name && joint.joint_type != JointType::Continuous && !range.contains(&position)
         })
-        .map(|joint| joint.name.as_str())
-        .collect();
+    };
+    let outside = locked.iter().filter(|(name, position)| is_outside(name, *position));
+    let outside: Vec<&str> = outside.map(|(name, _)| name.as_str()).collect();
     let text = || format!("These joints are locked outside their limits: {}", name_list(&outside));
     (!outside.is_empty()).then(text)
 }

@@ -8,6 +8,7 @@ mod guard;
 mod inertia;
 mod lock;
 mod meshes;
+mod nesting;
 mod numbers;
 mod oddities;
 mod shapes;
@@ -103,18 +104,23 @@ pub fn from_urdf(path: impl AsRef<Path>, options: &UrdfOptions) -> Result<RobotD
         )));
     }
     let meshes = meshes::MeshFinder::new(path, &options.package_dirs)?;
-    let tree = tree::Tree::new(guard::read(path, options.geometry)?)?;
+    let mut checked = guard::read(path, options.geometry)?;
+    let bad_shape = checked.bad_shape.take();
+    let tree = tree::Tree::new(checked)?;
     tree.check_reserved_names(options.floating_base)?;
     let mut warnings = oddities::oddities(&tree);
     warnings.extend(inertia::check_links(&tree)?);
     let locked = lock::positions(&tree, &options.locked_joints)?;
     let mut description = build::bodies(&tree, &locked, options.floating_base)?;
-    inertia::check_bodies(&description)?;
-    warnings.extend(lock::outside_limits(&tree, &locked));
-    warnings.extend(singular::check_mass_matrix(&description)?);
+    if let Some(error) = bad_shape {
+        return Err(error);
+    }
     for (link, visit) in description.links.iter_mut().zip(&tree.visits) {
         link.geometry = shapes::parts(&tree.robot.links[visit.link], options.geometry, &meshes)?;
     }
+    inertia::check_bodies(&description)?;
+    warnings.extend(lock::outside_limits(&tree, &locked));
+    warnings.extend(singular::check_mass_matrix(&description)?);
     if description.links.iter().all(|link| link.geometry.is_empty()) {
         let tag = options.geometry.tag();
         warnings.push(format!("No link has <{tag}> geometry, so the robot has no surface to be touched"));

@@ -1,6 +1,6 @@
 //! Which masses make the mass matrix singular.
 
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::{DMatrix, SymmetricEigen, Vector3};
 
 use super::inertia::NO_MOMENT;
 use super::name_list;
@@ -18,7 +18,13 @@ const TAKES_PART: f64 = 1e-3;
 /// Kinematics, isolation and inverse dynamics stay valid for such a robot; forward dynamics does not.
 /// [`Error::Model`] where the mass matrix has a negative eigenvalue or is not finite.
 pub(super) fn check_mass_matrix(description: &RobotDescription) -> Result<Option<String>> {
-    let robot = Robot::new(RobotDescription { links: vec![], ..description.clone() })?;
+    let robot = Robot::new(RobotDescription {
+        name: description.name.clone(),
+        joints: description.joints.clone(),
+        links: vec![],
+        gravity: Vector3::zeros(),
+        warnings: vec![],
+    })?;
     if robot.nv() == 0 {
         return Ok(None);
     }

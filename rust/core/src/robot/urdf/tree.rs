@@ -32,7 +32,7 @@ pub(super) struct Tree {
 
 impl Tree {
     pub fn new(checked: Checked) -> Result<Self> {
-        let Checked { robot, without_inertial } = checked;
+        let Checked { robot, without_inertial, .. } = checked;
         let links = index("link", robot.links.iter().map(|link| link.name.as_str()))?;
         index("joint", robot.joints.iter().map(|joint| joint.name.as_str()))?;
         let mut parents: Vec<Option<&str>> = vec![None; robot.links.len()];

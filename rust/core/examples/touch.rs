@@ -1,0 +1,54 @@
+//! A robot from a URDF, and where a push on it is found from the joint torques alone.
+//!
+//! `cargo run --release --example touch -- [URDF [PACKAGE_DIR ...]]`
+
+use std::sync::Arc;
+
+use contactsense::isolation::{ContactIsolator, IsolatorOptions};
+use contactsense::robot::{Robot, UrdfOptions};
+use contactsense::{Error, Result};
+use nalgebra::DVector;
+
+const PACKAGED: &str =
+    concat!(env!("CARGO_MANIFEST_DIR"), "/../../python/contactsense/descriptions/iiwa14.urdf");
+const FORCE: f64 = 20.0; // [N]
+
+fn main() -> Result<()> {
+    let mut arguments = std::env::args().skip(1);
+    let path = arguments.next().unwrap_or_else(|| PACKAGED.to_owned());
+    let package_dirs = arguments.map(Into::into).collect();
+    let robot = Arc::new(Robot::from_urdf(&path, &UrdfOptions { package_dirs, ..UrdfOptions::default() })?);
+    println!("{}: {} joints", robot.name(), robot.joint_names().len());
+    for warning in robot.warnings() {
+        println!("  {warning}");
+    }
+
+    // Every joint a little bent; a push against the last link, along the inward normal.
+    let mut q = robot.neutral();
+    for joint in q.iter_mut().filter(|joint| **joint == 0.0) {
+        *joint = 0.4;
+    }
+    let no_surface = || Error::Input("this robot has no surface to be touched".into());
+    let &link = robot.touchable_links().last().ok_or_else(no_surface)?;
+    let surface = robot.links()[link].surface.as_ref().ok_or_else(no_surface)?;
+    let pose = robot.link_pose(&q, link)?;
+    let touched = surface.sample(1, 7).into_iter().next().ok_or_else(no_surface)?;
+    let point = pose.transform_point(&touched.point);
+    let force = -FORCE * (pose.rotation * touched.normal);
+    let jacobian = robot.jacobian(&q, link, Some([point.x, point.y, point.z]))?;
+    let tau_ext: DVector<f64> = jacobian.rows(0, 3).transpose() * force;
+
+    let mut isolator = ContactIsolator::new(robot.clone(), &IsolatorOptions::default())?;
+    let isolation = isolator.isolate(&q, tau_ext.as_slice())?;
+    println!("pushed: {} at {:.4?} m", robot.links()[link].name, point.as_slice());
+    for contact in &isolation.contacts {
+        println!(
+            "found:  {} at {:.4?} m, {:.2} N{}",
+            robot.links()[contact.link].name,
+            contact.point.as_slice(),
+            contact.force.norm(),
+            if contact.located { "" } else { " (the link is known, the point is not)" }
+        );
+    }
+    Ok(())
+}
