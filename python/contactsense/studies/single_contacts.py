@@ -201,9 +201,10 @@ def table(results: list[LinkResult]) -> Table:
 
     total: Counter[str] = sum((result.outcomes for result in results), Counter())
     kinds = [kind for kind, _ in total.most_common()]
-    sheet = Table(
-        "link", *kinds, "point error [m]", "force error", title="Single contacts, ideal measurements"
-    )
+    sheet = Table(title="Single contacts, ideal measurements", box=SIMPLE_HEAD)
+    sheet.add_column("link", min_width=max(len(result.link) for result in results))
+    for column in (*kinds, "point error [m]", "force error"):
+        sheet.add_column(column, justify="right")
     for result in results:
         counts = [str(result.outcomes[kind] or "") for kind in kinds]
         sheet.add_row(result.link, *counts, f"{result.point_error:.1e}", f"{result.force_error:.1e}")
