@@ -140,7 +140,7 @@ impl WrenchEstimate {
 
     /// Standard deviation of the force as a share of it.
     pub fn force_spread(&self) -> f64 {
-        self.root.fixed_rows::<3>(0).norm() / self.force.norm()
+        self.root.fixed_rows::<3>(0).norm() / self.force.norm() * self.torque_deviation()
     }
 
     /// Standard deviation of a point of the line across the line [m].
