@@ -188,6 +188,8 @@ def test_bad_torques_are_refused(values: list[float]) -> None:
         ({"torque_threshold": [0.1, 0.2]}, "torque_threshold"),
         ({"torque_threshold": np.nan}, "torque_threshold"),
         ({"max_contacts": 0}, "max_contacts"),
+        ({"max_contacts": -1}, "max_contacts"),
+        ({"max_contacts": 2.5}, "max_contacts"),
     ],
 )
 def test_bad_settings_are_named(options: dict[str, object], name: str) -> None:

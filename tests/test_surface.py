@@ -275,3 +275,27 @@ def test_a_link_without_surface_says_so() -> None:
         robot.surface("iiwa_link_ee")
     with pytest.raises(cs.InputError, match="iiwa_link_7"):
         robot.surface("nowhere")
+
+
+@pytest.mark.parametrize("arguments", [{"n": -1}, {"n": 2.5}, {"n": 10**18}, {"n": 3, "seed": -1}])
+def test_bad_sample_counts_are_named(tmp_path: Path, arguments: dict[str, object]) -> None:
+    surface, _ = surface_of(tmp_path, '<sphere radius="0.3"/>')
+    with pytest.raises(cs.InputError, match=list(arguments)[-1]):
+        surface.sample(**arguments)
+
+
+@settings(max_examples=200, deadline=None)
+@given(
+    origin=st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=3, max_size=3),
+    direction=st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=3, max_size=3),
+)
+def test_any_finite_ray_has_an_answer(origin: list[float], direction: list[float]) -> None:
+    surface = cs.Robot.named("iiwa14").surface("iiwa_link_3")
+    sizes = [max(abs(x) for x in vector) for vector in (origin, direction)]
+    if max(sizes) >= 1e60 or sizes[1] < np.finfo(float).tiny:
+        with pytest.raises(cs.InputError, match="origins|directions"):
+            surface.cast_rays(origin, direction)
+        return
+    hits = surface.cast_rays(origin, direction)
+    assert np.isfinite(hits.point).all()
+    assert np.isfinite(surface.closest_points(origin).points).all()

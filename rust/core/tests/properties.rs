@@ -25,7 +25,7 @@ fn vector(length: usize) -> impl Strategy<Value = Vec<f64>> {
 }
 
 fn sensible(values: &[f64], length: usize) -> bool {
-    values.len() == length && values.iter().all(|x| x.is_finite())
+    values.len() == length && values.iter().all(|x| x.abs() < 1e60)
 }
 
 fn options() -> MonitorOptions {
@@ -50,7 +50,7 @@ proptest! {
         let calm = vec![0.1; 7];
         observer.update(&q, &calm, &calm, None, None).unwrap();
         let before = observer.update(&q, &calm, &calm, None, None).unwrap().to_vec();
-        let good = sensible(&v, 7) && sensible(&tau, 7) && dt.is_finite() && dt > 0.0;
+        let good = sensible(&v, 7) && sensible(&tau, 7) && (1e-9..=1e9).contains(&dt);
         let outcome = observer.update(&q, &v, &tau, None, Some(dt)).map(<[f64]>::to_vec);
         match outcome {
             Ok(torque) => {
