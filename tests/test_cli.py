@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -55,3 +56,21 @@ def test_a_missing_package_is_named(hidden: str, arguments: list[str], extra: st
     assert ended.returncode == 2
     assert extra in ended.stderr
     assert "Traceback" not in ended.stderr
+
+
+def test_single_contacts_prints_json(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["study", "single_contacts", "--robot", "iiwa14", "--points", "5", "--json"]) == 0
+    results = {entry["link"]: entry for entry in json.loads(capsys.readouterr().out)}
+    assert results["iiwa_link_7"]["outcomes"] == {"located": 5}
+    assert results["iiwa_link_7"]["point_error_m"] < 1e-9
+
+
+def test_single_contacts_prints_a_table(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["study", "single_contacts", "--points", "2"]) == 0
+    assert "l_hand" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("options", [["--robot", "nowhere.urdf"], ["--points", "0"]])
+def test_single_contacts_refuses(options: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["study", "single_contacts", *options]) == 2
+    assert "contactsense:" in capsys.readouterr().err

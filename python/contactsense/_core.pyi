@@ -21,9 +21,11 @@ __all__ = [
     "Robot",
     "Surface",
     "SurfaceSamples",
+    "__version__",
     "build_profile",
 ]
 
+__version__: Final[str]
 build_profile: Final[Literal["debug", "release"]]
 
 def _robot_from_urdf(
@@ -143,7 +145,7 @@ class ContactIsolator:
         robot: Robot,
         *,
         torque_threshold: ArrayLike | None = None,
-        max_contacts: int = 5,
+        max_contacts: int | None = None,
         pushing: bool = True,
     ) -> Self: ...
     def isolate(self, q: ArrayLike, tau_ext: ArrayLike) -> Isolation: ...
@@ -205,7 +207,7 @@ class ContactMonitor:
         bias_time_constant: float | None = None,
         bias_settle_time: float | None = None,
         hold_time: float = 0.02,
-        max_contacts: int = 5,
+        max_contacts: int | None = None,
         pushing: bool = True,
     ) -> Self: ...
     def update(

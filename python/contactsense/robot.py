@@ -21,9 +21,9 @@ DESCRIPTIONS = ("atlas", "iiwa14")
 class Robot(_core.Robot):
     """A robot: immutable, shareable between threads.
 
-    `q`, `v` and `tau` are ordered as in the Pinocchio model of the same URDF; a floating base has
-    `q = [position, quaternion xyzw, joints]` and `v = [base linear, base angular, joints]`, both base velocities in
-    the base frame.
+    `q`, `v` and `tau` are ordered as in the Pinocchio model of the same URDF. A floating base has
+    `q = [position, quaternion xyzw, joints]` and `v = [base linear, base angular, joints]`, both base
+    velocities in the base frame.
     """
 
     @classmethod

@@ -62,3 +62,30 @@ def franka_touch(
     else:
         report.print_study(result, Console(), touches=touches)
         print(f"Picture: {png}")
+
+
+@app.command("single_contacts")
+def single_contacts(
+    robot: Annotated[str, typer.Option(help="A packaged robot, or a URDF file.")] = "atlas",
+    package_dir: Annotated[
+        list[Path] | None, typer.Option(help="Folder for `package://` names; may be repeated.")
+    ] = None,
+    floating_base: Annotated[bool, typer.Option("--floating-base", help="The URDF's base is free.")] = False,
+    points: Annotated[int, typer.Option(help="Touches a link.")] = 100,
+    seed: Annotated[int, typer.Option(help="Of poses, points and forces.")] = 0,
+    as_json: Annotated[bool, typer.Option("--json", help="Print all results as JSON.")] = False,
+) -> None:
+    """Single contacts with ideal measurements: which are located, how exactly, and why the others are not."""
+    from .. import Robot
+    from ..robot import DESCRIPTIONS
+    from ..studies import single_contacts as study
+
+    if robot in DESCRIPTIONS:
+        subject = Robot.named(robot)
+    else:
+        subject = Robot.from_urdf(robot, package_dirs=package_dir or (), floating_base=floating_base)
+    results = study.run(subject, points, seed)
+    if as_json:
+        print(json.dumps(study.as_data(results), indent=2, allow_nan=False))
+    else:
+        Console().print(study.table(results))

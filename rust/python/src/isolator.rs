@@ -8,7 +8,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arrays::Vector;
+use crate::arrays::{whole, Vector};
 use crate::errors::to_python;
 use crate::observer::scalar_or_vector;
 use crate::robot::PyRobot;
@@ -204,6 +204,12 @@ impl PyIsolation {
     }
 }
 
+/// Contacts reported at most: an argument, or the default.
+pub fn contact_count(object: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
+    let count = object.map_or(Ok(5), |object| whole("max_contacts", object, 1000))?;
+    Ok(count as usize)
+}
+
 /// Finds the contact that explains an external torque: link, line of action, point, force (Vorndamme 2017, eqs. 22-26).
 ///
 /// `torque_threshold`: scalar or `(nv,)` [Nm, N], default 1e-3; a joint feels a contact above it, and a third of it
@@ -215,15 +221,16 @@ pub struct PyContactIsolator(Arc<Robot>, ContactIsolator);
 #[pymethods]
 impl PyContactIsolator {
     #[new]
-    #[pyo3(signature = (robot, *, torque_threshold=None, max_contacts=5, pushing=true))]
+    #[pyo3(signature = (robot, *, torque_threshold=None, max_contacts=None, pushing=true))]
     fn new(
         robot: &Bound<'_, PyRobot>,
         torque_threshold: Option<&Bound<'_, PyAny>>,
-        max_contacts: usize,
+        max_contacts: Option<&Bound<'_, PyAny>>,
         pushing: bool,
     ) -> PyResult<Self> {
         let threshold =
             torque_threshold.map_or(Ok(vec![1e-3]), |object| scalar_or_vector("torque_threshold", object))?;
+        let max_contacts = contact_count(max_contacts)?;
         let options = IsolatorOptions { torque_threshold: threshold, max_contacts, pushing };
         let arc = robot.get().0.clone();
         let isolator = ContactIsolator::new(arc.clone(), &options);

@@ -11,7 +11,7 @@ use pyo3::types::PyTuple;
 
 use crate::arrays::Vector;
 use crate::errors::to_python;
-use crate::isolator::{contacts, names};
+use crate::isolator::{contact_count, contacts, names};
 use crate::observer::scalar_or_vector;
 use crate::robot::PyRobot;
 
@@ -90,7 +90,7 @@ pub struct PyContactMonitor(ContactMonitor);
 impl PyContactMonitor {
     #[new]
     #[pyo3(signature = (robot, *, dt, observer_gain=None, torque_threshold=None, bias_time_constant=None,
-                        bias_settle_time=None, hold_time=0.02, max_contacts=5, pushing=true))]
+                        bias_settle_time=None, hold_time=0.02, max_contacts=None, pushing=true))]
     #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
         robot: &Bound<'_, PyRobot>,
@@ -100,7 +100,7 @@ impl PyContactMonitor {
         bias_time_constant: Option<f64>,
         bias_settle_time: Option<f64>,
         hold_time: f64,
-        max_contacts: usize,
+        max_contacts: Option<&Bound<'_, PyAny>>,
         pushing: bool,
     ) -> PyResult<Self> {
         let or_default = |name, object: Option<&Bound<'_, PyAny>>, default| {
@@ -111,7 +111,7 @@ impl PyContactMonitor {
             observer_gain: or_default("observer_gain", observer_gain, 50.0)?,
             isolation: IsolatorOptions {
                 torque_threshold: or_default("torque_threshold", torque_threshold, 0.5)?,
-                max_contacts,
+                max_contacts: contact_count(max_contacts)?,
                 pushing,
             },
             hold_time,

@@ -8,9 +8,12 @@ use nalgebra::Vector3;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{from_rows, rows};
+use crate::arrays::{from_rows, rows, whole};
 use crate::errors::{input, to_python};
 use contactsense::Error;
+
+/// Samples of one call at most: they fit into memory.
+const MOST_SAMPLES: u64 = 100_000_000;
 
 /// One link's surface, in the link frame.
 #[pyclass(frozen, name = "Surface", module = "contactsense._core")]
@@ -135,7 +138,7 @@ impl PySurface {
             );
             return Err(input(py, text));
         }
-        if let Some(row) = directions.iter().position(|d| Vector3::from(*d).norm() < 1e-12) {
+        if let Some(row) = directions.iter().position(|d| Vector3::from(*d).amax() < f64::MIN_POSITIVE) {
             return Err(input(py, format!("directions: row {row} is zero")));
         }
         let (ray, hits) = py.detach(|| cast_all(surface, &origins, &directions));
@@ -151,9 +154,17 @@ impl PySurface {
     /// `n` random points, uniform by area over the exposed surface; the same for the same seed.
     ///
     /// A larger `n` appends to the same points.
-    #[pyo3(signature = (n, seed=0))]
-    fn sample(&self, py: Python<'_>, n: usize, seed: u64) -> PyResult<SurfaceSamples> {
-        let found = self.core(py)?.sample(n, seed);
+    #[pyo3(signature = (n, seed=None), text_signature = "($self, n, seed=0)")]
+    fn sample(
+        &self,
+        py: Python<'_>,
+        n: &Bound<'_, PyAny>,
+        seed: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<SurfaceSamples> {
+        let n = whole("n", n, MOST_SAMPLES)?;
+        let seed = seed.map_or(Ok(0), |seed| whole("seed", seed, u64::MAX))?;
+        let surface = self.core(py)?;
+        let found = py.detach(|| surface.sample(n as usize, seed));
         Ok(SurfaceSamples {
             points: from_rows(py, found.iter().map(|hit| array(&hit.point)))?.unbind(),
             normals: from_rows(py, found.iter().map(|hit| array(&hit.normal)))?.unbind(),
@@ -168,7 +179,9 @@ fn cast_all(surface: &Surface, origins: &[[f64; 3]], directions: &[[f64; 3]]) ->
     let mut all = Vec::with_capacity(4 * origins.len());
     let mut hits = Vec::with_capacity(64);
     for (index, (origin, direction)) in origins.iter().zip(directions).enumerate() {
-        let direction = Vector3::from(*direction).normalize();
+        // Scaled first, so that no square overflows.
+        let direction = Vector3::from(*direction);
+        let direction = (direction / direction.amax()).normalize();
         hits.clear();
         while !surface.cast_line_into(&Vector3::from(*origin), &direction, 0.0, &mut hits) {
             hits.clear();

@@ -13,6 +13,7 @@ pub(crate) mod motion;
 mod tree;
 mod urdf;
 
+pub use configuration::LARGEST;
 pub use description::{JointDescription, JointKind, LinkDescription, RobotDescription};
 pub use forward_dynamics::ForwardDynamics;
 pub use kinematics::{BodyState, Kinematics};
