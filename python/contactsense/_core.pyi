@@ -22,6 +22,7 @@ __all__ = [
     "Surface",
     "SurfaceSamples",
     "__version__",
+    "_robot_from_urdf",
     "build_profile",
 ]
 

@@ -23,13 +23,13 @@ fn main() -> Result<()> {
         println!("  {warning}");
     }
 
-    // Every joint a little bent; a push against the last link, along the inward normal.
+    // Every joint a little bent; a push against the last link but one, along the inward normal.
     let mut q = robot.neutral();
     for joint in q.iter_mut().filter(|joint| **joint == 0.0) {
         *joint = 0.4;
     }
     let no_surface = || Error::Input("this robot has no surface to be touched".into());
-    let &link = robot.touchable_links().last().ok_or_else(no_surface)?;
+    let &link = robot.touchable_links().iter().nth_back(1).ok_or_else(no_surface)?;
     let surface = robot.links()[link].surface.as_ref().ok_or_else(no_surface)?;
     let pose = robot.link_pose(&q, link)?;
     let touched = surface.sample(1, 7).into_iter().next().ok_or_else(no_surface)?;
