@@ -23,13 +23,15 @@ def show(comparisons: Sequence[Comparison], about: dict[str, str]) -> None:
         print(caption)
         return
     table = Table(*HEADER, box=None, pad_edge=False)
+    for column in table.columns:
+        column.no_wrap = True
     for column in table.columns[2:6]:
         column.justify = "right"
     for row in rows:
         table.add_row(*row)
     console = Console()
     # A file or a pipe has no width of its own; a wrapped table is no table.
-    Console(width=max(console.width, 132)).print(table)
+    Console(width=max(console.width, 150)).print(table)
     print(caption)
 
 
