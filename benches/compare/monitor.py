@@ -27,6 +27,7 @@ LINKS = {
     "iiwa14": ["iiwa_link_6", "iiwa_link_7"],
     "atlas": ["l_hand", "r_hand", "utorso", "pelvis", "l_foot"],
 }
+SILENT = {"iiwa14": "iiwa_link_7", "atlas": "l_hand"}  # links that their joint need not feel
 LIMITS = {"iiwa14": (5.0, 10.0), "atlas": (15.0, 40.0)}  # [us], without and with a contact
 
 
@@ -37,6 +38,7 @@ def compare(pace: Pace) -> list[Comparison]:
         robot, model = robots.packaged(name)
         results.append(_free(name, robot, model, free, pace))
         results += _touched(name, robot, model, touched, pace)
+        results.append(_behind_silent_joint(name, robot, model, touched, pace))
     return results
 
 
@@ -95,16 +97,38 @@ def _touched_once(
     return interleave(contestants, pace)
 
 
+def _behind_silent_joint(name: str, robot: cs.Robot, model: Any, limit: float, pace: Pace) -> Comparison:
+    """The slowest contact that its link's own joint does not feel; the reference cannot find it."""
+    rng = np.random.default_rng(2)
+    link = SILENT[name]
+    runs = []
+    for _ in range(pace.contacts):
+        q, v, tau = _held_contact(robot, model, link, rng, felt=False)
+        monitor = cs.ContactMonitor(robot, dt=DT, torque_threshold=THRESHOLD)
+        for _ in range(SETTLED):
+            report = monitor.update(q, v, tau)
+        assert report.contacts[0].located
+        assert report.contacts[0].link == link
+        names = {"q": q, "v": v, "tau": tau, "update": monitor.update}
+        runs.append(interleave([Contestant("contactsense", HOLD, names)], pace))
+    slowest = max(runs, key=lambda run: run[0].median)
+    task = f"monitor, {name}, {link}, slowest of {len(runs)}, its joint silent"
+    return Comparison(task, slowest, max_us=limit)
+
+
 def _monitors(robot: cs.Robot, model: Any, threshold: float) -> tuple[cs.ContactMonitor, ReferenceMonitor]:
     ours = cs.ContactMonitor(robot, dt=DT, torque_threshold=threshold)
     return ours, ReferenceMonitor(model, robot, dt=DT, threshold=threshold)
 
 
-def _held_contact(robot: cs.Robot, model: Any, link: str, rng: np.random.Generator) -> robots.Step:
+def _held_contact(
+    robot: cs.Robot, model: Any, link: str, rng: np.random.Generator, *, felt: bool = True
+) -> robots.Step:
     """A robot at rest that is pushed on `link` where the torques tell the point, and holds against it.
 
-    The link's own joint feels the push: the reference does not look for contacts behind a silent joint.
+    `felt`: whether the link's own joint feels the push.
     """
+    own = model.joints[model.frames[model.getFrameId(link, pin.FrameType.BODY)].parentJoint]
     isolator = cs.ContactIsolator(robot, torque_threshold=THRESHOLD)
     for _ in range(TRIES):
         q = robots.random_posture(model, rng)
@@ -112,13 +136,13 @@ def _held_contact(robot: cs.Robot, model: Any, link: str, rng: np.random.Generat
         pose = robot.link_pose(q, link)
         point = pose[:3, :3] @ sample.points[0] + pose[:3, 3]
         # Not along the normal: on a round link that gives its joint no torque.
-        inward = rng.uniform(-0.3, 0.3, 3) - pose[:3, :3] @ sample.normals[0]
+        inward = rng.uniform(-0.3, 0.3, 3) * felt - pose[:3, :3] @ sample.normals[0]
         force = FORCE * inward / np.linalg.norm(inward)
         pushed = robot.jacobian(q, link, point)[:3].T @ force
         contacts = isolator.isolate(q, pushed).contacts
-        own = model.joints[model.frames[model.getFrameId(link, pin.FrameType.BODY)].parentJoint]
-        felt = np.abs(pushed[own.idx_v : own.idx_v + own.nv]).max() > 2.0 * THRESHOLD
-        if felt and len(contacts) == 1 and contacts[0].located and contacts[0].link == link:
+        largest = np.abs(pushed[own.idx_v : own.idx_v + own.nv]).max()
+        fits = largest > 2.0 * THRESHOLD if felt else largest < 0.5 * THRESHOLD
+        if fits and len(contacts) == 1 and contacts[0].located and contacts[0].link == link:
             rest = np.zeros(robot.nv)
             return q, rest, robot.inverse_dynamics(q, rest, rest) - pushed
     raise RuntimeError(f"no contact on {link} that the torques determine in {TRIES} tries")

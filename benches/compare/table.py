@@ -29,20 +29,23 @@ def show(comparisons: Sequence[Comparison], about: dict[str, str]) -> None:
         column.justify = "right"
     for row in rows:
         table.add_row(*row)
-    console = Console()
-    # A file or a pipe has no width of its own; a wrapped table is no table.
-    Console(width=max(console.width, 150)).print(table)
+    # A narrow terminal wraps whole lines, which reads better than cut cells.
+    Console(width=sum(_widths(rows)) + 2 * len(HEADER)).print(table)
     print(caption)
 
 
 def _show_plain(rows: Sequence[Sequence[str]]) -> None:
-    widths = [max(len(row[k]) for row in [HEADER, *rows]) for k in range(len(HEADER))]
+    widths = _widths(rows)
     for row in [HEADER, *rows]:
         cells = (
             cell.rjust(width) if 2 <= k < 6 else cell.ljust(width)
             for k, (cell, width) in enumerate(zip(row, widths, strict=True))
         )
         print("  ".join(cells).rstrip())
+
+
+def _widths(rows: Sequence[Sequence[str]]) -> list[int]:
+    return [max(len(row[k]) for row in [HEADER, *rows]) for k in range(len(HEADER))]
 
 
 def _rows(comparison: Comparison) -> list[tuple[str, ...]]:

@@ -8,8 +8,8 @@ use nalgebra::Vector3;
 /// Most entries a depth-first search ever holds: three a level, and the depth is checked when the tree is built.
 pub(super) const STACK: usize = 96;
 const MAX_DEPTH: usize = 31;
-const SURFACE_AREA_DEPTH: usize = 20;
-const MAX_LEAF: usize = 4;
+const SURFACE_AREA_DEPTH: usize = 17;
+const MAX_LEAF: usize = 2;
 const BINS: usize = 12;
 /// Enlargement of boxes relative to the mesh's radius: well above single-precision rounding.
 const MARGIN: f64 = 2e-6;
