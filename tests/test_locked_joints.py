@@ -7,8 +7,8 @@ import pinocchio as pin
 import pytest
 from urdf_text import ARM, write
 
-from contactsense._urdf import describe_urdf
 from contactsense.errors import InputError
+from contactsense.loading.describe_urdf import describe_urdf
 
 
 @pytest.fixture

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from urdf_text import SOLID, link, robot, shape, write
 
-from contactsense._urdf import describe_urdf
 from contactsense.errors import GeometryError
+from contactsense.loading.describe_urdf import describe_urdf
 
 
 @pytest.fixture

@@ -122,7 +122,9 @@ def bad_calls(nq: int) -> list[tuple[str, tuple[object, object, object], str]]:
     ]
 
 
-@pytest.mark.parametrize(("what", "arguments", "name"), bad_calls(7), ids=lambda x: x if isinstance(x, str) else "")
+@pytest.mark.parametrize(
+    ("what", "arguments", "name"), bad_calls(7), ids=lambda x: x if isinstance(x, str) else ""
+)
 def test_bad_input_is_named_and_changes_nothing(
     arm: cs.Robot, what: str, arguments: tuple[object, object, object], name: str
 ) -> None:

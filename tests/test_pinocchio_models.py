@@ -7,9 +7,9 @@ import pytest
 from robot_files import PACKAGE_DIRS, ROBOTS
 from urdf_text import ARM, joint, link, robot, shape
 
-from contactsense._models import describe_pinocchio
-from contactsense._urdf import describe_urdf
 from contactsense.errors import GeometryError, InputError, ModelError
+from contactsense.loading.describe_pinocchio import describe_pinocchio
+from contactsense.loading.describe_urdf import describe_urdf
 
 TETRAHEDRON = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
 FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])

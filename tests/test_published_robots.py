@@ -5,8 +5,8 @@ import pinocchio as pin
 import pytest
 from robot_files import PACKAGE_DIRS, ROBOTS, example
 
-from contactsense._urdf import describe_urdf
 from contactsense.errors import GeometryError, ModelError
+from contactsense.loading.describe_urdf import describe_urdf
 
 WIDTHS = {"free_flyer": (7, 6), "continuous": (2, 1), "revolute": (1, 1), "prismatic": (1, 1)}
 

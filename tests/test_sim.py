@@ -15,8 +15,8 @@ pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install c
 
 import mujoco
 
-from contactsense._urdf import describe_urdf
 from contactsense.errors import InputError, ModelError
+from contactsense.loading.describe_urdf import describe_urdf
 from contactsense.sim import (
     ComputedTorqueController,
     Coordinates,

@@ -9,9 +9,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from urdf_text import ARM, SOLID, joint, link, robot, shape, write
 
-from contactsense._description import RobotDescription
-from contactsense._urdf import describe_urdf
 from contactsense.errors import ContactSenseError, GeometryError, InputError, ModelError
+from contactsense.loading.describe_urdf import describe_urdf
+from contactsense.loading.description import RobotDescription
 
 AB = link("a") + link("b")
 LIMIT = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'

@@ -12,12 +12,11 @@ from ._core import (
     RayHits,
     Surface,
     SurfaceSamples,
+    __version__,
     build_profile,
 )
 from .errors import ContactSenseError, GeometryError, InputError, ModelError
 from .robot import Robot
-
-__version__ = "0.1.0"
 
 __all__ = [
     "Candidate",
@@ -36,5 +35,6 @@ __all__ = [
     "Robot",
     "Surface",
     "SurfaceSamples",
+    "__version__",
     "build_profile",
 ]

@@ -10,10 +10,10 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._description import RobotDescription
-from ._models import describe_pinocchio
-from ._urdf import describe_urdf
 from .errors import InputError
+from .loading.describe_pinocchio import describe_pinocchio
+from .loading.describe_urdf import describe_urdf
+from .loading.description import RobotDescription
 
 DESCRIPTIONS = ("atlas", "iiwa14")
 
@@ -21,8 +21,9 @@ DESCRIPTIONS = ("atlas", "iiwa14")
 class Robot(_core.Robot):
     """A robot: immutable, shareable between threads.
 
-    `q`, `v` and `tau` are ordered as in the Pinocchio model of the same URDF; a floating base has
-    `q = [position, quaternion xyzw, joints]` and `v = [base linear, base angular, both in the base frame, joints]`.
+    `q`, `v` and `tau` are ordered as in the Pinocchio model of the same URDF. A floating base has
+    `q = [position, quaternion xyzw, joints]` and `v = [base linear, base angular, joints]`, both base
+    velocities in the base frame.
     """
 
     @classmethod
@@ -40,7 +41,7 @@ class Robot(_core.Robot):
 
         Args:
             path: the URDF.
-            package_dirs: folders that `package://` names and mesh files may come from, besides the URDF's own.
+            package_dirs: where `package://` names and mesh files may come from, besides the URDF's own.
             floating_base: whether the root link moves freely.
             locked_joints: `{name: position}` [rad, m], or names, held at neutral.
             geometry: "collision" or "visual".

@@ -9,8 +9,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from contactsense._description import GeometryTuple, LinkTuple
 from contactsense.errors import GeometryError
+from contactsense.loading.description import GeometryTuple, LinkTuple
 
 from ._arrays import FloatArray
 from ._text import pose_attributes, text

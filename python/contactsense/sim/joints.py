@@ -8,9 +8,9 @@ from typing import Literal, TypeAlias
 import numpy as np
 import pinocchio as pin
 
-from contactsense._description import JointKind, JointTuple
-from contactsense._pinocchio import joints_of
 from contactsense.errors import ModelError
+from contactsense.loading.description import JointKind, JointTuple
+from contactsense.loading.pinocchio_model import joints_of
 
 MujocoKind: TypeAlias = Literal["hinge", "slide", "free"]
 

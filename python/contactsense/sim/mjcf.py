@@ -14,8 +14,8 @@ from typing import Literal, TypeAlias
 import numpy as np
 import pinocchio as pin
 
-from contactsense._description import JointTuple
 from contactsense.errors import InputError, ModelError
+from contactsense.loading.description import JointTuple
 
 from ._arrays import positive
 from ._text import pose_attributes, text

@@ -1,15 +1,19 @@
-"""Single contacts with ideal measurements: what the torques determine, and how exactly (Vorndamme 2017, VI-B)."""
+"""Single contacts, ideal measurements: what the torques determine, how exactly (Vorndamme 2017, VI-B)."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import ContactIsolator, InputError, Robot
+
+if TYPE_CHECKING:
+    from rich.table import Table
 
 FloatArray = NDArray[np.float64]
 
@@ -116,8 +120,15 @@ def _tilt(direction: FloatArray, rng: np.random.Generator) -> FloatArray:
     return tilted
 
 
-def judge(robot: Robot, isolator: ContactIsolator, touch: Touch, threshold: float) -> tuple[str, float, float]:
-    """Outcome of one touch, and the errors of point [m] and force (relative; NaN where not located)."""
+def judge(
+    robot: Robot, isolator: ContactIsolator, touch: Touch, threshold: float
+) -> tuple[str, float, float]:
+    """Outcome of one touch, and the errors of point [m] and force (relative; NaN where not located).
+
+    "located"; "not felt" by any joint; the link alone is right, or another is named, because the wrench has
+    "rank < 6" or the "own joint" of the touched link is "silent" (under its threshold). "WRONG": said to be
+    located, but is not within the tolerance; "MISSED": determined, but not located.
+    """
     jacobian = robot.jacobian(touch.q, touch.link, touch.point)
     tau_ext = jacobian[:3].T @ touch.force
     columns = np.flatnonzero(np.any(jacobian != 0.0, axis=0))
@@ -125,20 +136,18 @@ def judge(robot: Robot, isolator: ContactIsolator, touch: Touch, threshold: floa
     own_joint_feels = columns.size > 0 and abs(tau_ext[columns[-1]]) > threshold
     contacts = isolator.isolate(touch.q, tau_ext).contacts
     if not contacts:
-        return ("not felt by any joint", np.nan, np.nan)
+        return ("not felt", np.nan, np.nan)
     contact = contacts[0]
     if contact.located:
         point_error = float(np.linalg.norm(contact.point - touch.point))
         force_error = float(np.linalg.norm(contact.force - touch.force) / np.linalg.norm(touch.force))
         if point_error > TOLERANCE or force_error > TOLERANCE or contact.link != touch.link:
-            return ("WRONG, said to be located", point_error, force_error)
+            return ("WRONG", point_error, force_error)
         return ("located", point_error, force_error)
     if determined and own_joint_feels:
-        return ("MISSED, though determined", np.nan, np.nan)
-    named = "link named" if contact.link == touch.link else "another link named"
-    why = "own joint feels it" if own_joint_feels else "own joint does not feel it"
-    note = "" if determined else ", rank below 6"
-    return (f"{named}; {why}{note}", np.nan, np.nan)
+        return ("MISSED", np.nan, np.nan)
+    named = "link only" if contact.link == touch.link else "other link"
+    return (f"{named}, {'rank < 6' if own_joint_feels else 'own joint silent'}", np.nan, np.nan)
 
 
 def wrench_rank(jacobian: FloatArray) -> int:
@@ -165,8 +174,41 @@ def run(robot: Robot, points: int = 100, seed: int = 0, threshold: float = 1e-3)
         judged = [judge(robot, isolator, touch, threshold) for touch in touches(robot, link, points, rng)]
         outcomes = Counter(outcome for outcome, _, _ in judged)
         if len(judged) < points:
-            outcomes["not reachable along a free line"] = points - len(judged)
+            outcomes["out of reach"] = points - len(judged)
         errors = np.array([(p, f) for _, p, f in judged if not np.isnan(p)]).reshape(-1, 2)
         worst = errors.max(axis=0, initial=0.0)
         results.append(LinkResult(link, outcomes, float(worst[0]), float(worst[1])))
     return results
+
+
+def as_data(results: list[LinkResult]) -> list[dict[str, object]]:
+    """The results as plain data."""
+    return [
+        {
+            "link": result.link,
+            "outcomes": dict(result.outcomes),
+            "point_error_m": result.point_error,
+            "force_error_relative": result.force_error,
+        }
+        for result in results
+    ]
+
+
+def table(results: list[LinkResult]) -> Table:
+    """The results as a table of counts, one column an outcome."""
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    total: Counter[str] = sum((result.outcomes for result in results), Counter())
+    kinds = [kind for kind, _ in total.most_common()]
+    sheet = Table(title="Single contacts, ideal measurements", box=SIMPLE_HEAD)
+    sheet.add_column("link", min_width=max(len(result.link) for result in results))
+    for column in (*kinds, "point error [m]", "force error"):
+        sheet.add_column(column, justify="right")
+    for result in results:
+        counts = [str(result.outcomes[kind] or "") for kind in kinds]
+        sheet.add_row(result.link, *counts, f"{result.point_error:.1e}", f"{result.force_error:.1e}")
+    worst = [max(result.point_error for result in results), max(result.force_error for result in results)]
+    sheet.add_section()
+    sheet.add_row("all", *(str(total[kind]) for kind in kinds), *(f"{value:.1e}" for value in worst))
+    return sheet

@@ -42,6 +42,7 @@ fn tick(c: &mut Criterion) {
             isolation: IsolatorOptions::default(),
             hold_time: 0.02,
             bias_time_constant: None,
+            bias_settle_time: None,
         };
         let mut monitor = ContactMonitor::new(robot, &options).expect("valid settings");
         group.bench_function(name, |b| {

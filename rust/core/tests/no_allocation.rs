@@ -107,6 +107,7 @@ fn a_tick_allocates_nothing() {
             isolation: IsolatorOptions { torque_threshold: vec![0.01], ..IsolatorOptions::default() },
             hold_time: 0.01,
             bias_time_constant: Some(0.02),
+            bias_settle_time: Some(5.0),
         };
         let mut monitor = ContactMonitor::new(robot.clone(), &options).expect("valid options");
         let weight = robot.inverse_dynamics(&q, &still, &still).expect("valid input");

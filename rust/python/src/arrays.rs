@@ -1,5 +1,6 @@
 //! Array arguments: float64 and C-contiguous ones are read in place, other array-likes are converted.
 
+use contactsense::robot::LARGEST;
 use nalgebra::DMatrix;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -42,7 +43,17 @@ impl<'py> Vector<'py> {
     }
 }
 
-/// Rows of `N` finite numbers; a single row may be given flat.
+/// A whole number from 0 to `most`.
+pub fn whole(name: &str, object: &Bound<'_, PyAny>, most: u64) -> PyResult<u64> {
+    match object.extract::<u64>() {
+        Ok(number) if number <= most => Ok(number),
+        _ => {
+            Err(input(object.py(), format!("{name}: expected a whole number from 0 to {most}, got {object}")))
+        }
+    }
+}
+
+/// Rows of `N` numbers of a size that can be computed with; a single row may be given flat.
 pub fn rows<const N: usize>(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<[f64; N]>> {
     let py = object.py();
     let wrong = || input(py, format!("{name}: expected an array of shape (n, {N})"));
@@ -61,8 +72,8 @@ pub fn rows<const N: usize>(name: &str, object: &Bound<'_, PyAny>) -> PyResult<V
     } else {
         return Err(wrong());
     };
-    match rows.iter().position(|row| !row.iter().all(|x| x.is_finite())) {
-        Some(row) => Err(input(py, format!("{name}: row {row} is not finite"))),
+    match rows.iter().position(|row| !row.iter().all(|x| x.abs() < LARGEST)) {
+        Some(row) => Err(input(py, format!("{name}: row {row} must be finite and below {LARGEST:e}"))),
         None => Ok(rows),
     }
 }

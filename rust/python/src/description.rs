@@ -58,14 +58,15 @@ fn joint(tuple: &Bound<'_, PyTuple>) -> PyResult<JointDescription> {
     })
 }
 
-fn part(tuple: &Bound<'_, PyTuple>) -> PyResult<Part> {
+fn part(link: &str, tuple: &Bound<'_, PyTuple>) -> PyResult<Part> {
     let py = tuple.py();
     let kind: String = tuple.get_item(0)?.extract()?;
     let sizes = tuple.get_item(1)?;
     let geometry = match kind.as_str() {
         "mesh_file" => {
             let (path, scale): (std::path::PathBuf, [f64; 3]) = sizes.extract()?;
-            let (vertices, triangles) = load_mesh(&path, scale).map_err(|error| to_python(py, error))?;
+            let (vertices, triangles) = load_mesh(&path, scale)
+                .map_err(|error| to_python(py, Error::Geometry(format!("link '{link}': {error}"))))?;
             Geometry::Mesh { vertices, triangles }
         }
         "mesh" => {
@@ -103,7 +104,7 @@ fn link(tuple: &Bound<'_, PyTuple>) -> PyResult<LinkDescription> {
     let name: String = tuple.get_item(0)?.extract()?;
     let mut geometry = vec![];
     for item in tuple.get_item(3)?.try_iter()? {
-        geometry.push(part(item?.cast::<PyTuple>()?)?);
+        geometry.push(part(&name, item?.cast::<PyTuple>()?)?);
     }
     Ok(LinkDescription {
         joint: tuple.get_item(1)?.extract()?,
@@ -113,7 +114,7 @@ fn link(tuple: &Bound<'_, PyTuple>) -> PyResult<LinkDescription> {
     })
 }
 
-/// A description of the loaders' tuples (`contactsense._description` says what they hold).
+/// A description of the loaders' tuples (`contactsense.loading.description` says what they hold).
 pub fn description(
     name: String,
     joints: &Bound<'_, PyAny>,

@@ -8,7 +8,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arrays::Vector;
+use crate::arrays::{whole, Vector};
 use crate::errors::to_python;
 use crate::observer::scalar_or_vector;
 use crate::robot::PyRobot;
@@ -22,21 +22,25 @@ pub struct PyCandidate {
 
 #[pymethods]
 impl PyCandidate {
+    /// The link's name.
     #[getter]
     fn link(&self) -> &str {
         &self.robot.links()[self.candidate.link].name
     }
 
+    /// `(3,)`, world frame [m].
     #[getter]
     fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, self.candidate.point.as_slice())
     }
 
+    /// Outward surface normal, `(3,)`, world frame.
     #[getter]
     fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, self.candidate.normal.as_slice())
     }
 
+    /// Whether the force enters the surface here.
     #[getter]
     fn pushing(&self) -> bool {
         self.candidate.pushing
@@ -58,51 +62,63 @@ pub struct PyContact {
 
 #[pymethods]
 impl PyContact {
+    /// The contact link's name.
     #[getter]
     fn link(&self) -> &str {
         &self.robot.links()[self.contact.link].name
     }
 
+    /// `(3,)`, world frame [m].
     #[getter]
     fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, self.contact.point.as_slice())
     }
 
+    /// `(3,)`, link frame [m].
     #[getter]
     fn point_local<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, self.contact.point_local.as_slice())
     }
 
+    /// Force on the robot, `(3,)`, world frame [N].
     #[getter]
     fn force<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, self.contact.force.as_slice())
     }
 
+    /// Outward surface normal at the point, `(3,)`, world frame.
     #[getter]
     fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, self.contact.normal.as_slice())
     }
 
+    /// Force and moment on the robot at the link's origin, `(6,)`, world axes [N, Nm].
     #[getter]
     fn wrench<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, self.contact.wrench.as_slice())
     }
 
+    /// What located it: "joint torques".
     #[getter]
     fn source(&self) -> &'static str {
         "joint torques"
     }
 
+    /// False: the link is known, the point is not.
     #[getter]
     fn located(&self) -> bool {
         self.contact.located
     }
 
+    /// Standard deviation of the point on the surface [m]; NaN where there is no point.
+    ///
+    /// A torque's is taken as a third of its threshold, or as less where the torques agree better than that.
     #[getter]
     fn point_std(&self) -> f64 {
         self.contact.point_std
     }
 
+    /// Every surface hit of the line of action, best first.
     #[getter]
     fn candidates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let wrap = |candidate: &Candidate| PyCandidate { robot: self.robot.clone(), candidate: *candidate };
@@ -154,21 +170,25 @@ pub fn names<'py>(py: Python<'py>, robot: &Robot, links: &[usize]) -> PyResult<B
 
 #[pymethods]
 impl PyIsolation {
+    /// The contacts, farthest from the base first; one a branch that feels one.
     #[getter]
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         contacts(py, &self.robot, &self.isolation)
     }
 
+    /// Components of the contacts' wrenches that the torques leave open (Vorndamme 2017, eq. 31).
     #[getter]
     fn rank_deficit(&self) -> usize {
         self.isolation.rank_deficit
     }
 
+    /// Norm of the external torque that the contacts do not explain.
     #[getter]
     fn residual(&self) -> f64 {
         self.isolation.residual
     }
 
+    /// Links that may carry a contact, likeliest first.
     #[getter]
     fn link_candidates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         names(py, &self.robot, &self.isolation.link_candidates)
@@ -184,28 +204,42 @@ impl PyIsolation {
     }
 }
 
-/// Finds the contact that explains an external torque.
+/// Contacts reported at most: an argument, or the default.
+pub fn contact_count(object: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
+    let count = object.map_or(Ok(5), |object| whole("max_contacts", object, 1000))?;
+    Ok(count as usize)
+}
+
+/// Finds the contact that explains an external torque: link, line of action, point, force (Vorndamme 2017, eqs. 22-26).
+///
+/// `torque_threshold`: scalar or `(nv,)` [Nm, N], default 1e-3; a joint feels a contact above it, and a third of it
+/// is the scale of the torques' errors. `max_contacts`: reported at most. `pushing`: forces push on the surface (if
+/// False the point stays open: `located` is False). Raises `InputError` that names the argument.
 #[pyclass(name = "ContactIsolator", module = "contactsense._core")]
 pub struct PyContactIsolator(Arc<Robot>, ContactIsolator);
 
 #[pymethods]
 impl PyContactIsolator {
     #[new]
-    #[pyo3(signature = (robot, *, torque_threshold=None, max_contacts=5, pushing=true))]
+    #[pyo3(signature = (robot, *, torque_threshold=None, max_contacts=None, pushing=true))]
     fn new(
         robot: &Bound<'_, PyRobot>,
         torque_threshold: Option<&Bound<'_, PyAny>>,
-        max_contacts: usize,
+        max_contacts: Option<&Bound<'_, PyAny>>,
         pushing: bool,
     ) -> PyResult<Self> {
         let threshold =
             torque_threshold.map_or(Ok(vec![1e-3]), |object| scalar_or_vector("torque_threshold", object))?;
+        let max_contacts = contact_count(max_contacts)?;
         let options = IsolatorOptions { torque_threshold: threshold, max_contacts, pushing };
         let arc = robot.get().0.clone();
         let isolator = ContactIsolator::new(arc.clone(), &options);
         Ok(Self(arc, isolator.map_err(|error| to_python(robot.py(), error))?))
     }
 
+    /// Contacts that explain the external torque `tau_ext` `(nv,)` at the configuration `q` `(nq,)`.
+    ///
+    /// Raises `InputError` that names the argument.
     fn isolate(
         &mut self,
         py: Python<'_>,

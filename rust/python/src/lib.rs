@@ -10,10 +10,13 @@ mod monitor;
 mod observer;
 mod robot;
 mod surface;
+mod urdf;
 
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("build_profile", if cfg!(debug_assertions) { "debug" } else { "release" })?;
+    module.add_function(wrap_pyfunction!(urdf::_robot_from_urdf, module)?)?;
     module.add_class::<robot::PyRobot>()?;
     module.add_class::<surface::PySurface>()?;
     module.add_class::<surface::ClosestPoints>()?;

@@ -11,7 +11,7 @@ use pyo3::types::PyTuple;
 
 use crate::arrays::Vector;
 use crate::errors::to_python;
-use crate::isolator::{contacts, names};
+use crate::isolator::{contact_count, contacts, names};
 use crate::observer::scalar_or_vector;
 use crate::robot::PyRobot;
 
@@ -24,36 +24,43 @@ pub struct PyContactReport {
 
 #[pymethods]
 impl PyContactReport {
+    /// Since the first call [s].
     #[getter]
     fn time(&self) -> f64 {
         self.report.time
     }
 
+    /// Whether there is a contact.
     #[getter]
     fn collision(&self) -> bool {
         self.report.collision
     }
 
+    /// Whether the contact began with this tick.
     #[getter]
     fn onset(&self) -> bool {
         self.report.onset
     }
 
+    /// Links that detection alone names: on every branch those between the last joint over its threshold and the next.
     #[getter]
     fn links<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         names(py, &self.robot, &self.report.links)
     }
 
+    /// `(nv,)` [Nm, N], free of the tracked bias.
     #[getter]
     fn external_torque<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.report.external_torque)
     }
 
+    /// Estimated acceleration, `(nv,)`.
     #[getter]
     fn acceleration<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.report.acceleration)
     }
 
+    /// The contacts; empty while there is no collision.
     #[getter]
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         contacts(py, &self.robot, &self.report.isolation)
@@ -69,7 +76,13 @@ impl PyContactReport {
     }
 }
 
-/// The sense of touch of one robot, called once a control tick.
+/// The sense of touch of one robot, called once a control tick: observer, bias, detection, isolation.
+///
+/// `dt`: time between two calls [s]. `observer_gain`: scalar or `(nv,)` [1/s], default 50. `torque_threshold`: scalar
+/// or `(nv,)` [Nm, N], default 0.5. `bias_time_constant` [s]: tracks the torque that a model's errors feign while
+/// nothing touches; the first time constant is taken as free of contact. `hold_time` [s]: a signal stays on so long
+/// after it was last over its threshold. `max_contacts`, `pushing`: as in `ContactIsolator`. Raises `InputError` that
+/// names the argument.
 #[pyclass(name = "ContactMonitor", module = "contactsense._core")]
 pub struct PyContactMonitor(ContactMonitor);
 
@@ -77,7 +90,7 @@ pub struct PyContactMonitor(ContactMonitor);
 impl PyContactMonitor {
     #[new]
     #[pyo3(signature = (robot, *, dt, observer_gain=None, torque_threshold=None, bias_time_constant=None,
-                        hold_time=0.02, max_contacts=5, pushing=true))]
+                        bias_settle_time=None, hold_time=0.02, max_contacts=None, pushing=true))]
     #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
         robot: &Bound<'_, PyRobot>,
@@ -85,8 +98,9 @@ impl PyContactMonitor {
         observer_gain: Option<&Bound<'_, PyAny>>,
         torque_threshold: Option<&Bound<'_, PyAny>>,
         bias_time_constant: Option<f64>,
+        bias_settle_time: Option<f64>,
         hold_time: f64,
-        max_contacts: usize,
+        max_contacts: Option<&Bound<'_, PyAny>>,
         pushing: bool,
     ) -> PyResult<Self> {
         let or_default = |name, object: Option<&Bound<'_, PyAny>>, default| {
@@ -97,16 +111,20 @@ impl PyContactMonitor {
             observer_gain: or_default("observer_gain", observer_gain, 50.0)?,
             isolation: IsolatorOptions {
                 torque_threshold: or_default("torque_threshold", torque_threshold, 0.5)?,
-                max_contacts,
+                max_contacts: contact_count(max_contacts)?,
                 pushing,
             },
             hold_time,
             bias_time_constant,
+            bias_settle_time,
         };
         let monitor = ContactMonitor::new(robot.get().0.clone(), &options);
         Ok(Self(monitor.map_err(|error| to_python(robot.py(), error))?))
     }
 
+    /// One tick: `q` `(nq,)`, `v` `(nv,)`, `tau` and `friction` `(nv,)` or `(nv - 6,)` for a floating base.
+    ///
+    /// Raises `InputError` that names the argument; the state is then unchanged.
     #[pyo3(signature = (q, v, tau, *, friction=None))]
     fn update(
         &mut self,
@@ -123,6 +141,7 @@ impl PyContactMonitor {
         Ok(PyContactReport { robot: self.0.robot().clone(), report: self.0.report() })
     }
 
+    /// Forgets all ticks, the bias too.
     fn reset(&mut self) {
         self.0.reset();
     }

@@ -16,7 +16,13 @@ pub fn scalar_or_vector(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<f
     }
 }
 
-/// Estimates the external torque from positions, velocities and motor torques.
+/// The generalised momentum observer (Vorndamme 2017, eqs. 4-6) with its acceleration (eq. 9).
+///
+/// Estimates the external torque `(nv,)` from positions, velocities and motor torques; each component is the true
+/// one behind a first-order low-pass with time constant `1 / gain`. Stable for any `gain * dt`.
+///
+/// `dt`: time between two calls [s]; `gain`: scalar or `(nv,)` [1/s], default 50. Raises `InputError` that names the
+/// argument.
 #[pyclass(name = "MomentumObserver", module = "contactsense._core")]
 pub struct PyMomentumObserver(MomentumObserver);
 
@@ -31,6 +37,11 @@ impl PyMomentumObserver {
         Ok(Self(observer.map_err(|error| to_python(py, error))?))
     }
 
+    /// One tick; the external torque `(nv,)`, a fresh array. The first call sets the initial momentum, returns zeros.
+    ///
+    /// `q` `(nq,)`, `v` `(nv,)`, `tau` `(nv,)` or `(nv - 6,)` for a floating base: measured at one instant (a torque held
+    /// over the steps before and after: its mean). `dt` replaces the constructor's for this step; `friction`, shaped as
+    /// `tau`, is subtracted from it. Raises `InputError` that names the argument; the state is then unchanged.
     #[pyo3(signature = (q, v, tau, *, dt=None, friction=None))]
     fn update<'py>(
         &mut self,
@@ -50,15 +61,18 @@ impl PyMomentumObserver {
         }
     }
 
+    /// Forgets all ticks; the next call is a first call.
     fn reset(&mut self) {
         self.0.reset();
     }
 
+    /// Of the last tick, `(nv,)`; a copy.
     #[getter]
     fn external_torque<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, self.0.external_torque())
     }
 
+    /// Estimated acceleration at the last tick, `(nv,)`: forward dynamics with the external torque.
     #[getter]
     fn acceleration<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, self.0.acceleration())

@@ -31,26 +31,31 @@ impl PyRobot {
         Ok(Self(Arc::new(Robot::new(description).map_err(|error| to_python(py, error))?)))
     }
 
+    /// The robot's name.
     #[getter]
     fn name(&self) -> &str {
         self.0.name()
     }
 
+    /// Number of configuration variables.
     #[getter]
     fn nq(&self) -> usize {
         self.0.nq()
     }
 
+    /// Number of velocity variables.
     #[getter]
     fn nv(&self) -> usize {
         self.0.nv()
     }
 
+    /// Whether the base moves freely.
     #[getter]
     fn floating_base(&self) -> bool {
         self.0.floating_base()
     }
 
+    /// Names of the moving joints, in the order of `v`.
     #[getter]
     fn joint_names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.0.joint_names())
@@ -62,26 +67,35 @@ impl PyRobot {
         PyTuple::new(py, self.0.joint_kinds().map(|kind| kind.name()))
     }
 
+    /// Names of the links that have a surface.
     #[getter]
     fn link_names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.0.touchable_links().iter().map(|link| &self.0.links()[*link].name))
     }
 
+    /// What was odd in the description, and what was done about it.
     #[getter]
     fn warnings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.0.warnings())
     }
 
+    /// The neutral configuration, `(nq,)`.
     fn neutral<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_vec(py, self.0.neutral())
     }
 
+    /// The joint-space mass matrix `M(q)`, `(nv, nv)`.
+    ///
+    /// Raises `InputError` where `q` is not `(nq,)`, finite, with unit quaternions and (cos, sin) pairs.
     fn mass_matrix<'py>(&self, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let py = q.py();
         let q = Vector::new("q", q)?;
         matrix(py, &self.0.mass_matrix(q.slice()).map_err(|error| to_python(py, error))?)
     }
 
+    /// `M(q) a + C(q, v) v + g(q)`, `(nv,)` [Nm; N for sliding joints and a base's linear part].
+    ///
+    /// Raises `InputError` that names the argument.
     fn inverse_dynamics<'py>(
         &self,
         q: &Bound<'py, PyAny>,
@@ -94,6 +108,10 @@ impl PyRobot {
         Ok(PyArray1::from_vec(py, tau.map_err(|error| to_python(py, error))?))
     }
 
+    /// `M(q)^-1 (tau + tau_ext - C(q, v) v - g(q))`, `(nv,)`.
+    ///
+    /// `tau` is `(nv,)`, or `(nv - 6,)` for a floating base; `tau_ext` is `(nv,)`. A joint that moves no inertia gets
+    /// acceleration 0. Raises `InputError` that names the argument.
     #[pyo3(signature = (q, v, tau, tau_ext=None))]
     fn forward_dynamics<'py>(
         &self,
@@ -110,6 +128,9 @@ impl PyRobot {
         Ok(PyArray1::from_vec(py, a.map_err(|error| to_python(py, error))?))
     }
 
+    /// Pose of a link in the world, `(4, 4)`; any URDF link, also one without surface.
+    ///
+    /// Raises `InputError` that names the argument; an unknown link's message lists the links.
     fn link_pose<'py>(&self, q: &Bound<'py, PyAny>, link: &str) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let py = q.py();
         let q = Vector::new("q", q)?;
@@ -117,6 +138,10 @@ impl PyRobot {
         pose(py, &self.0.link_pose(q.slice(), link).map_err(|error| to_python(py, error))?)
     }
 
+    /// Geometric Jacobian of a link, `(6, nv)`, linear rows first, world axes, at a world `point` fixed to the link
+    /// (default: the link's origin).
+    ///
+    /// Raises `InputError` that names the argument.
     #[pyo3(signature = (q, link, point=None))]
     fn jacobian<'py>(
         &self,
@@ -132,6 +157,9 @@ impl PyRobot {
         matrix(py, &self.0.jacobian(q.slice(), link, point).map_err(|error| to_python(py, error))?)
     }
 
+    /// The surface of a link, in the link frame.
+    ///
+    /// Raises `InputError` where the link is unknown or has no surface.
     fn surface(&self, py: Python<'_>, link: &str) -> PyResult<PySurface> {
         let index = self.0.link(link).map_err(|error| to_python(py, error))?;
         if self.0.links()[index].surface.is_none() {

@@ -8,9 +8,12 @@ use nalgebra::Vector3;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{from_rows, rows};
+use crate::arrays::{from_rows, rows, whole};
 use crate::errors::{input, to_python};
 use contactsense::Error;
+
+/// Samples of one call at most: they fit into memory.
+const MOST_SAMPLES: u64 = 100_000_000;
 
 /// One link's surface, in the link frame.
 #[pyclass(frozen, name = "Surface", module = "contactsense._core")]
@@ -22,27 +25,39 @@ pub struct PySurface {
 /// Nearest points, one row a query.
 #[pyclass(frozen, get_all, module = "contactsense._core")]
 pub struct ClosestPoints {
+    /// `(n, 3)`, link frame [m].
     points: Py<PyArray2<f64>>,
+    /// `(n, 3)`, outward.
     normals: Py<PyArray2<f64>>,
+    /// `(n,)`, unsigned [m].
     distances: Py<PyArray1<f64>>,
+    /// `(n,)`, rows of `Surface.triangles`; -1 on an exact primitive.
     triangles: Py<PyArray1<i64>>,
 }
 
 /// Every hit of a batch of rays, sorted per ray.
 #[pyclass(frozen, get_all, module = "contactsense._core")]
 pub struct RayHits {
+    /// `(k,)`, row of the query.
     ray: Py<PyArray1<i64>>,
+    /// `(k,)`, from the origin [m].
     distance: Py<PyArray1<f64>>,
+    /// `(k, 3)`, link frame [m].
     point: Py<PyArray2<f64>>,
+    /// `(k, 3)`, outward.
     normal: Py<PyArray2<f64>>,
+    /// `(k,)`; -1 on an exact primitive.
     triangle: Py<PyArray1<i64>>,
 }
 
 /// Random points of a surface.
 #[pyclass(frozen, get_all, module = "contactsense._core")]
 pub struct SurfaceSamples {
+    /// `(n, 3)`, link frame [m].
     points: Py<PyArray2<f64>>,
+    /// `(n, 3)`, outward.
     normals: Py<PyArray2<f64>>,
+    /// `(n,)`; -1 on an exact primitive.
     triangles: Py<PyArray1<i64>>,
 }
 
@@ -59,11 +74,13 @@ fn array(vector: &Vector3<f64>) -> [f64; 3] {
 
 #[pymethods]
 impl PySurface {
+    /// Vertices, `(n, 3)`, link frame [m]; of exact primitives a tessellation, for display.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         from_rows(py, self.core(py)?.vertices().iter().copied())
     }
 
+    /// Vertex indices, `(m, 3)`, counter-clockwise seen from outside.
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
         use numpy::PyArrayMethods;
@@ -72,16 +89,21 @@ impl PySurface {
         PyArray1::from_vec(py, flat).reshape([triangles.len(), 3])
     }
 
+    /// Sum of the parts' areas [m^2]; where parts overlap, both count.
     #[getter]
     fn area(&self, py: Python<'_>) -> PyResult<f64> {
         Ok(self.core(py)?.area())
     }
 
+    /// Whether every part is closed.
     #[getter]
     fn watertight(&self, py: Python<'_>) -> PyResult<bool> {
         Ok(self.core(py)?.watertight())
     }
 
+    /// The nearest surface point of each query; the minimum over the link's parts.
+    ///
+    /// `points` is `(n, 3)` in the link frame [m]. Distances are unsigned. Raises `InputError` that names the argument.
     fn closest_points(&self, py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<ClosestPoints> {
         let surface = self.core(py)?;
         let points = rows::<3>("points", points)?;
@@ -95,6 +117,10 @@ impl PySurface {
         })
     }
 
+    /// Every hit of each ray, sorted by distance per ray. Watertight: a closed mesh is entered as often as left.
+    ///
+    /// `origins` and `directions` are `(n, 3)` in the link frame; directions need not be unit, distances are in metres.
+    /// Hits inside another closed part of the link are left out. Raises `InputError` that names the argument.
     fn cast_rays(
         &self,
         py: Python<'_>,
@@ -112,7 +138,7 @@ impl PySurface {
             );
             return Err(input(py, text));
         }
-        if let Some(row) = directions.iter().position(|d| Vector3::from(*d).norm() < 1e-12) {
+        if let Some(row) = directions.iter().position(|d| Vector3::from(*d).amax() < f64::MIN_POSITIVE) {
             return Err(input(py, format!("directions: row {row} is zero")));
         }
         let (ray, hits) = py.detach(|| cast_all(surface, &origins, &directions));
@@ -125,9 +151,20 @@ impl PySurface {
         })
     }
 
-    #[pyo3(signature = (n, seed=0))]
-    fn sample(&self, py: Python<'_>, n: usize, seed: u64) -> PyResult<SurfaceSamples> {
-        let found = self.core(py)?.sample(n, seed);
+    /// `n` random points, uniform by area over the exposed surface; the same for the same seed.
+    ///
+    /// A larger `n` appends to the same points.
+    #[pyo3(signature = (n, seed=None), text_signature = "($self, n, seed=0)")]
+    fn sample(
+        &self,
+        py: Python<'_>,
+        n: &Bound<'_, PyAny>,
+        seed: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<SurfaceSamples> {
+        let n = whole("n", n, MOST_SAMPLES)?;
+        let seed = seed.map_or(Ok(0), |seed| whole("seed", seed, u64::MAX))?;
+        let surface = self.core(py)?;
+        let found = py.detach(|| surface.sample(n as usize, seed));
         Ok(SurfaceSamples {
             points: from_rows(py, found.iter().map(|hit| array(&hit.point)))?.unbind(),
             normals: from_rows(py, found.iter().map(|hit| array(&hit.normal)))?.unbind(),
@@ -142,7 +179,9 @@ fn cast_all(surface: &Surface, origins: &[[f64; 3]], directions: &[[f64; 3]]) ->
     let mut all = Vec::with_capacity(4 * origins.len());
     let mut hits = Vec::with_capacity(64);
     for (index, (origin, direction)) in origins.iter().zip(directions).enumerate() {
-        let direction = Vector3::from(*direction).normalize();
+        // Scaled first, so that no square overflows.
+        let direction = Vector3::from(*direction);
+        let direction = (direction / direction.amax()).normalize();
         hits.clear();
         while !surface.cast_line_into(&Vector3::from(*origin), &direction, 0.0, &mut hits) {
             hits.clear();

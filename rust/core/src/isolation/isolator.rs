@@ -22,6 +22,9 @@ const UNEXPLAINED_SHARE: f64 = 0.05;
 const UNEXPLAINED_THRESHOLDS: f64 = 3.0;
 /// A misfit that chance brings about once in a thousand times [thresholds].
 const EXACT_FIT: f64 = 1e-3;
+/// A contact is located if its force exceeds so many standard deviations of it, and its link's bounding radius so
+/// many of the point's. A weaker force has the direction of the torques' errors, and feigns a certain point.
+const SIGNIFICANCE: f64 = 3.0;
 
 /// Settings of a [`ContactIsolator`].
 #[derive(Debug, Clone)]
@@ -130,7 +133,9 @@ impl ContactIsolator {
         for _ in 0..ROUNDS {
             let wrench = estimate_wrench(&self.robot, kinematics, body, tau_ext, &self.threshold);
             self.isolation.rank_deficit = 6 - wrench.rank;
-            if wrench.rank < 6 {
+            // Also where the comparison fails for want of a number.
+            let significant = SIGNIFICANCE * wrench.force_spread() < 1.0;
+            if wrench.rank < 6 || !significant {
                 if body == tip && wrench.rank == 5 && self.isolate_behind(kinematics, tip, tau_ext) {
                     return;
                 }
@@ -254,7 +259,7 @@ impl ContactIsolator {
         contact.wrench = stack(&force, &(hit.point - pose.translation).cross(&force));
         contact.point_std = point_std;
         contact.candidates = 0..self.isolation.candidates.len();
-        contact.located = self.pushing && point_std < size && misfit.sqrt() <= allowed;
+        contact.located = self.pushing && SIGNIFICANCE * point_std < size && misfit.sqrt() <= allowed;
         self.isolation.contacts.push(contact);
     }
 

@@ -138,6 +138,11 @@ impl WrenchEstimate {
         linear.dot(&self.force) + angular.dot(&self.moment)
     }
 
+    /// Standard deviation of the force as a share of it.
+    pub fn force_spread(&self) -> f64 {
+        self.root.fixed_rows::<3>(0).norm() / self.force.norm() * self.torque_deviation()
+    }
+
     /// Standard deviation of a point of the line across the line [m].
     pub fn point_std(&self, point: &Vector3<f64>) -> f64 {
         let lever = (point - self.reference).cross_matrix();

@@ -36,6 +36,11 @@ impl BiasTracker {
         self.bias.iter_mut().zip(torque).for_each(|(bias, torque)| *bias += share * (torque - *bias));
     }
 
+    /// Takes a torque for the bias at once.
+    pub fn set(&mut self, bias: &[f64]) {
+        self.bias.copy_from_slice(bias);
+    }
+
     /// The bias `(nv,)`.
     pub fn bias(&self) -> &[f64] {
         &self.bias

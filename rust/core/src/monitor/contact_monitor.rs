@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::bias::BiasTracker;
+use super::release::ReleaseDetector;
 use crate::detection::Detector;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::isolation::{ContactIsolator, Isolation, IsolatorOptions};
 use crate::observer::MomentumObserver;
 use crate::robot::Robot;
@@ -22,6 +23,9 @@ pub struct MonitorOptions {
     pub hold_time: f64,
     /// Time constant of the bias that is tracked while nothing touches [s]; none for no tracking.
     pub bias_time_constant: Option<f64>,
+    /// With bias tracking: a torque that stands still for this long is no contact, whatever its size [s]; none: a
+    /// contact may last for ever.
+    pub bias_settle_time: Option<f64>,
 }
 
 /// What the monitor says of one tick.
@@ -50,6 +54,7 @@ pub struct ContactMonitor {
     dt: f64,
     observer: MomentumObserver,
     bias: Option<BiasTracker>,
+    release: ReleaseDetector,
     detector: Detector,
     isolator: ContactIsolator,
     ticks: u64,
@@ -63,9 +68,15 @@ impl ContactMonitor {
     /// [`crate::Error::Input`] names the option.
     pub fn new(robot: Arc<Robot>, options: &MonitorOptions) -> Result<Self> {
         let nv = robot.nv();
+        if let Some(time) = options.bias_settle_time.filter(|time| !(time.is_finite() && *time > 0.0)) {
+            return Err(Error::Input(format!(
+                "bias_settle_time: must be positive and finite [s], or none, not {time}"
+            )));
+        }
         Ok(Self {
             observer: MomentumObserver::new(robot.clone(), options.dt, &options.observer_gain)?,
             bias: options.bias_time_constant.map(|constant| BiasTracker::new(nv, constant)).transpose()?,
+            release: ReleaseDetector::new(nv, options.bias_settle_time),
             detector: Detector::new(robot.clone(), &options.isolation.torque_threshold, options.hold_time)?,
             isolator: ContactIsolator::new(robot.clone(), &options.isolation)?,
             dt: options.dt,
@@ -95,22 +106,27 @@ impl ContactMonitor {
         Ok(())
     }
 
-    /// Subtracts the bias; it follows the torque while no signal is on. False during its first average.
+    /// Subtracts the bias, which follows the torque while nothing touches. False during its first average.
     fn remove_bias(&mut self, first: bool) -> bool {
         let Some(bias) = &mut self.bias else { return true };
         let ready = bias.ready();
         let threshold = self.detector.threshold();
+        let over = |((torque, bias), threshold): ((&f64, &f64), &f64)| (torque - bias).abs() > *threshold;
         let touched = ready
             && (self.detector.collision()
-                || self
-                    .external_torque
-                    .iter()
-                    .zip(bias.bias())
-                    .zip(threshold)
-                    .any(|((torque, bias), threshold)| (torque - bias).abs() > *threshold));
-        // The first call has no torque yet.
-        if !touched && !first {
-            bias.follow(&self.external_torque, self.dt);
+                || self.external_torque.iter().zip(bias.bias()).zip(threshold).any(over));
+        if touched {
+            if self.release.update(&self.external_torque, bias.bias(), threshold, self.dt) {
+                bias.set(self.release.remainder());
+                self.release.reset();
+                self.detector.reset();
+            }
+        } else {
+            self.release.reset();
+            // The first call has no torque yet.
+            if !first {
+                bias.follow(&self.external_torque, self.dt);
+            }
         }
         self.external_torque.iter_mut().zip(bias.bias()).for_each(|(torque, bias)| *torque -= bias);
         ready
@@ -143,6 +159,7 @@ impl ContactMonitor {
         self.isolator.clear();
         self.external_torque.fill(0.0);
         self.ticks = 0;
+        self.release.reset();
         if let Some(bias) = &mut self.bias {
             bias.reset();
         }

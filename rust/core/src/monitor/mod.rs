@@ -2,6 +2,8 @@
 
 mod bias;
 mod contact_monitor;
+mod release;
 
 pub use bias::BiasTracker;
 pub use contact_monitor::{ContactMonitor, ContactReport, MonitorOptions};
+pub use release::ReleaseDetector;

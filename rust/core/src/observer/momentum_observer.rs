@@ -181,10 +181,14 @@ impl MomentumObserver {
     }
 }
 
-pub(crate) fn check_time_step(dt: f64) -> Result<()> {
-    if dt.is_finite() && dt > 0.0 {
+/// Shortest and longest time step [s].
+const TIME_STEPS: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+
+fn check_time_step(dt: f64) -> Result<()> {
+    if TIME_STEPS.contains(&dt) {
         Ok(())
     } else {
-        Err(Error::Input(format!("dt: must be positive and finite [s], not {dt}")))
+        let (from, to) = (TIME_STEPS.start(), TIME_STEPS.end());
+        Err(Error::Input(format!("dt: must lie between {from:e} and {to:e} s, not {dt}")))
     }
 }

@@ -7,15 +7,16 @@ use crate::error::{Error, Result};
 /// Unit quaternions and (cos, sin) pairs may be off by this much (squared norm); they are normalised.
 const NORM_TOLERANCE: f64 = 1e-3;
 
-/// Checks that `values` has `length` finite entries.
+/// Arguments must be smaller: products of a few such numbers stay finite.
+pub const LARGEST: f64 = 1e60;
+
+/// Checks that `values` has `length` finite entries of a size that can be computed with.
 #[inline]
 pub(crate) fn check_vector(argument: &str, values: &[f64], length: usize) -> Result<()> {
     if values.len() != length {
         return Err(wrong_length(argument, values.len(), length));
     }
-    // A sum is finite unless an entry is not (or overflows, which is no sensible input either).
-    let sum: f64 = values.iter().map(|x| x * 0.0).sum();
-    if sum == 0.0 {
+    if values.iter().all(|x| x.abs() < LARGEST) {
         Ok(())
     } else {
         Err(not_finite(argument, values))
@@ -29,8 +30,9 @@ fn wrong_length(argument: &str, found: usize, wanted: usize) -> Error {
 
 #[cold]
 fn not_finite(argument: &str, values: &[f64]) -> Error {
-    let index = values.iter().position(|x| !x.is_finite()).unwrap_or(0);
-    Error::Input(format!("{argument}: entry {index} is {}; all entries must be finite", values[index]))
+    let index = values.iter().position(|x| x.is_nan() || x.abs() >= LARGEST).unwrap_or(0);
+    let value = values[index];
+    Error::Input(format!("{argument}: entry {index} is {value}; all must be finite and below {LARGEST:e}"))
 }
 
 impl Robot {

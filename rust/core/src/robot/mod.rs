@@ -11,9 +11,12 @@ mod mass_matrix;
 mod momentum;
 pub(crate) mod motion;
 mod tree;
+mod urdf;
 
+pub use configuration::LARGEST;
 pub use description::{JointDescription, JointKind, LinkDescription, RobotDescription};
 pub use forward_dynamics::ForwardDynamics;
 pub use kinematics::{BodyState, Kinematics};
 pub use momentum::MomentumPass;
 pub use tree::{Link, Robot, WORLD};
+pub use urdf::{from_urdf, UrdfGeometry, UrdfOptions};

@@ -4,6 +4,7 @@
 //! boxes, cylinders, spheres and capsules are exact. Everything is in the link's frame, in metres, and immutable.
 
 mod build;
+mod bvh;
 mod closest;
 mod collada;
 mod components;

@@ -1,16 +1,21 @@
 //! A bounding volume tree over triangles: four boxes a node, single precision, rounded outward.
 //!
-//! Boxes only cull; they are enlarged by more than any rounding in the queries, so no triangle is ever lost. The
-//! coordinates are relative to the mesh's centre.
+//! parry's binary tree, collapsed. Boxes only cull; they are enlarged by more than any rounding in the queries, so no
+//! triangle is ever lost. The coordinates are relative to the mesh's centre.
+
+use std::ops::Range;
 
 use nalgebra::Vector3;
+use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 
-/// Most entries a depth-first search ever holds: three a level, and the depth is checked when the tree is built.
-pub(super) const STACK: usize = 96;
-const MAX_DEPTH: usize = 31;
-const SURFACE_AREA_DEPTH: usize = 17;
-const MAX_LEAF: usize = 2;
-const BINS: usize = 12;
+use super::bvh::{self, Branch};
+
+/// Most entries a depth-first search ever holds: three a level, and one.
+pub(super) const STACK: usize = 3 * MAX_DEPTH + 1;
+pub(super) const MAX_DEPTH: usize = HALVING_DEPTH + 13;
+/// From this depth on leaves are halved by count, which takes at most 13 levels: 4 * 4^13 is `Child::MAX_TRIANGLES`.
+const HALVING_DEPTH: usize = 18;
+const MAX_LEAF: usize = 4;
 /// Enlargement of boxes relative to the mesh's radius: well above single-precision rounding.
 const MARGIN: f64 = 2e-6;
 
@@ -40,7 +45,7 @@ impl Child {
 
     /// The run of triangles, if it is one.
     #[inline]
-    pub fn triangles(self) -> Option<std::ops::Range<usize>> {
+    pub fn triangles(self) -> Option<Range<usize>> {
         (self.0 & Self::LEAF != 0).then(|| {
             let first = (self.0 & ((1 << 28) - 1)) as usize;
             first..first + (self.0 >> 28 & 7) as usize
@@ -57,32 +62,19 @@ pub(super) struct Tree {
     pub radius: f64,
 }
 
-#[derive(Clone, Copy)]
-struct Bounds {
-    low: [f64; 3],
-    high: [f64; 3],
+/// Triangles that are next to each other in leaf order.
+struct Group {
+    bounds: Aabb,
+    slots: Range<usize>,
+    /// Where the binary tree parts them; nowhere once it went too deep.
+    branch: Option<usize>,
 }
 
-impl Bounds {
-    const EMPTY: Bounds = Bounds { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
-
-    fn add(&mut self, other: &Bounds) {
-        for k in 0..3 {
-            self.low[k] = self.low[k].min(other.low[k]);
-            self.high[k] = self.high[k].max(other.high[k]);
-        }
-    }
-
-    fn half_area(&self) -> f64 {
-        let [x, y, z] = [0, 1, 2].map(|k| (self.high[k] - self.low[k]).max(0.0));
-        x * y + y * z + z * x
-    }
-}
-
-struct Item {
-    bounds: Bounds,
-    middle: [f64; 3],
-    id: u32,
+/// What a tree is grown from: the binary tree, its leaf order, and the boxes that it is over.
+struct Source<'a> {
+    branches: &'a [Branch],
+    order: &'a [u32],
+    boxes: &'a [Aabb],
 }
 
 impl Tree {
@@ -93,133 +85,96 @@ impl Tree {
         let high = all.clone().fold(Vector3::repeat(f64::NEG_INFINITY), |a, v| a.sup(v));
         let center = (low + high) * 0.5;
         let radius = all.map(|v| (v - center).norm()).fold(0.0, f64::max);
-        let mut items: Vec<Item> = corners
+        let margin = MARGIN * radius;
+        // Adding and subtracting this rounds to 6e-8 of the radius, which bounds the depth of the binary tree.
+        let coarse = radius * f64::from(1 << 28);
+        let boxes: Vec<Aabb> = corners
             .iter()
-            .enumerate()
-            .map(|(id, [a, b, c])| {
-                let bounds = Bounds {
-                    low: (a.inf(b).inf(c) - center).into(),
-                    high: (a.sup(b).sup(c) - center).into(),
-                };
-                let middle = [0, 1, 2].map(|k| 0.5 * (bounds.low[k] + bounds.high[k]));
-                Item { bounds, middle, id: id as u32 }
+            .map(|[a, b, c]| {
+                let low = (a.inf(b).inf(c) - center).add_scalar(coarse - margin).add_scalar(-coarse);
+                let high = (a.sup(b).sup(c) - center).add_scalar(coarse + margin).add_scalar(-coarse);
+                Aabb::new(<[f64; 3]>::from(low).into(), <[f64; 3]>::from(high).into())
             })
             .collect();
-        let mut tree = Tree { nodes: Vec::new(), center, radius };
-        let margin = MARGIN * radius;
-        tree.grow(&mut items, 0, 0, margin);
-        (tree, items.iter().map(|item| item.id).collect())
+        let (branches, order) = bvh::build(&boxes);
+        let nodes = collapse(&branches, &order, &boxes);
+        (Tree { nodes, center, radius }, order)
     }
+}
 
-    /// Adds the node over `items`, which start at `first` in leaf order, and all below it.
-    fn grow(&mut self, items: &mut [Item], first: usize, depth: usize, margin: f64) -> u32 {
-        assert!(depth < MAX_DEPTH, "median splits bound the depth");
-        let index = self.nodes.len();
-        self.nodes.push(Node {
-            low: [[NOWHERE; 4]; 3],
-            high: [[NOWHERE; 4]; 3],
-            child: [Child::leaf(0, 0); 4],
-        });
-        let by_area = depth < SURFACE_AREA_DEPTH;
-        let middle = split(items, by_area);
-        let (left, right) = items.split_at_mut(middle);
-        let mut start = first;
-        let mut lane = 0;
-        for half in [left, right] {
-            let at = split(half, by_area);
-            let (a, b) = half.split_at_mut(at);
-            for quarter in [a, b] {
-                if quarter.is_empty() {
-                    continue;
-                }
-                let mut bounds = Bounds::EMPTY;
-                quarter.iter().for_each(|item| bounds.add(&item.bounds));
-                let child = if quarter.len() <= MAX_LEAF {
-                    Child::leaf(start, quarter.len())
-                } else {
-                    Child(self.grow(quarter, start, depth + 1, margin))
-                };
-                let node = &mut self.nodes[index];
-                for k in 0..3 {
-                    node.low[k][lane] = (bounds.low[k] - margin) as f32;
-                    node.high[k][lane] = (bounds.high[k] + margin) as f32;
-                }
-                node.child[lane] = child;
-                lane += 1;
-                start += quarter.len();
+/// The nodes over a binary tree with leaves in this order, of which there must be one: at most `MAX_DEPTH` levels,
+/// however deep that tree is.
+pub(super) fn collapse(branches: &[Branch], order: &[u32], boxes: &[Aabb]) -> Vec<Node> {
+    let root = Group { bounds: branches[0].bounds, slots: 0..order.len(), branch: Some(0) };
+    let mut nodes = Vec::new();
+    Source { branches, order, boxes }.grow(&mut nodes, root, 0);
+    nodes
+}
+
+impl Source<'_> {
+    /// Adds the node over `group` and all below it; returns its index.
+    fn grow(&self, nodes: &mut Vec<Node>, group: Group, depth: usize) -> u32 {
+        let index = nodes.len();
+        nodes.push(Node { low: [[NOWHERE; 4]; 3], high: [[NOWHERE; 4]; 3], child: [Child::leaf(0, 0); 4] });
+        for (lane, group) in self.quarter(group, depth).into_iter().enumerate() {
+            let node = &mut nodes[index];
+            for k in 0..3 {
+                node.low[k][lane] = group.bounds.mins[k] as f32;
+                node.high[k][lane] = group.bounds.maxs[k] as f32;
             }
+            nodes[index].child[lane] = if group.slots.len() <= MAX_LEAF {
+                Child::leaf(group.slots.start, group.slots.len())
+            } else {
+                Child(self.grow(nodes, group, depth + 1))
+            };
         }
         index as u32
     }
-}
 
-/// Orders the items in two groups and returns where the second starts (0 or the length: no split needed).
-fn split(items: &mut [Item], by_area: bool) -> usize {
-    if items.len() <= MAX_LEAF {
-        return items.len();
-    }
-    let mut low = [f64::INFINITY; 3];
-    let mut high = [f64::NEG_INFINITY; 3];
-    for item in items.iter() {
-        for k in 0..3 {
-            low[k] = low[k].min(item.middle[k]);
-            high[k] = high[k].max(item.middle[k]);
+    /// Up to four groups, by splitting again and again the one of largest area, or when halving of most triangles.
+    fn quarter(&self, mut group: Group, depth: usize) -> Vec<Group> {
+        let halving = depth >= HALVING_DEPTH;
+        if halving {
+            group.branch = None;
         }
-    }
-    let axis = (0..3).max_by(|&a, &b| (high[a] - low[a]).total_cmp(&(high[b] - low[b]))).unwrap_or(0);
-    if by_area {
-        if let Some(at) = split_by_area(items, low, high) {
-            return at;
+        let mut groups = vec![group];
+        while groups.len() < 4 {
+            let size = |i: usize| {
+                let group = &groups[i];
+                if halving {
+                    group.slots.len() as f64
+                } else {
+                    group.bounds.half_area()
+                }
+            };
+            let open = (0..groups.len()).filter(|&i| groups[i].slots.len() > MAX_LEAF);
+            let Some(largest) = open.max_by(|&a, &b| size(a).total_cmp(&size(b))) else { break };
+            let (left, right) = self.split(&groups[largest]);
+            groups[largest] = left;
+            groups.insert(largest + 1, right);
         }
+        groups
     }
-    let half = items.len() / 2;
-    items.select_nth_unstable_by(half, |a, b| a.middle[axis].total_cmp(&b.middle[axis]));
-    half
-}
 
-/// The surface area heuristic over bins of the centres, on the best of the three axes.
-fn split_by_area(items: &mut [Item], low: [f64; 3], high: [f64; 3]) -> Option<usize> {
-    let mut best: Option<(f64, usize, usize)> = None;
-    for axis in 0..3 {
-        let extent = high[axis] - low[axis];
-        if extent <= 0.0 {
-            continue;
-        }
-        let mut bins = [(Bounds::EMPTY, 0usize); BINS];
-        for item in items.iter() {
-            let bin = &mut bins[bin_of(item, axis, low[axis], extent)];
-            bin.0.add(&item.bounds);
-            bin.1 += 1;
-        }
-        let mut behind = [0.0; BINS];
-        let (mut bounds, mut count) = (Bounds::EMPTY, 0);
-        for k in (1..BINS).rev() {
-            bounds.add(&bins[k].0);
-            count += bins[k].1;
-            behind[k] = bounds.half_area() * count as f64;
-        }
-        let (mut bounds, mut count) = (Bounds::EMPTY, 0);
-        for k in 1..BINS {
-            bounds.add(&bins[k - 1].0);
-            count += bins[k - 1].1;
-            let cost = bounds.half_area() * count as f64 + behind[k];
-            if count > 0 && count < items.len() && best.is_none_or(|(least, ..)| cost < least) {
-                best = Some((cost, axis, k));
-            }
+    fn split(&self, group: &Group) -> (Group, Group) {
+        let Range { start, end } = group.slots;
+        if let Some(branch) = group.branch {
+            let child = self.branches[branch].child;
+            let [left, right] = [&self.branches[child], &self.branches[child + 1]];
+            let middle = start + left.count;
+            (
+                Group { bounds: left.bounds, slots: start..middle, branch: Some(child) },
+                Group { bounds: right.bounds, slots: middle..end, branch: Some(child + 1) },
+            )
+        } else {
+            let middle = start.midpoint(end);
+            (self.run(start..middle), self.run(middle..end))
         }
     }
-    let (_, axis, bin) = best?;
-    let extent = high[axis] - low[axis];
-    let mut at = 0;
-    for i in 0..items.len() {
-        if bin_of(&items[i], axis, low[axis], extent) < bin {
-            items.swap(i, at);
-            at += 1;
-        }
-    }
-    Some(at)
-}
 
-fn bin_of(item: &Item, axis: usize, low: f64, extent: f64) -> usize {
-    (((item.middle[axis] - low) / extent * BINS as f64) as usize).min(BINS - 1)
+    fn run(&self, slots: Range<usize>) -> Group {
+        let mut bounds = Aabb::new_invalid();
+        self.order[slots.clone()].iter().for_each(|&id| bounds.merge(&self.boxes[id as usize]));
+        Group { bounds, slots, branch: None }
+    }
 }

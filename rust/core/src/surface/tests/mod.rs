@@ -6,5 +6,6 @@ mod meshes;
 mod primitives;
 mod repairs;
 mod samples;
+mod trees;
 mod unions;
 mod watertight;

@@ -1,0 +1,51 @@
+# `make demo` and `make test` are all the set-up there is: each makes .venv, builds the release code and runs.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+
+.PHONY: demo test lint types rust-test python-test bench clean toolchain install
+
+demo: install
+	$(BIN)/contactsense demo
+
+test: lint types rust-test python-test
+
+lint: install
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets --release -- -D warnings
+
+types: install
+	$(BIN)/mypy
+	$(BIN)/python -m mypy.stubtest contactsense._core
+
+rust-test: toolchain
+	cargo test --workspace --release --quiet
+	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --release --quiet
+
+python-test: install
+	$(BIN)/python -m pytest -q
+
+bench: install
+	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet --extras bench
+	cargo bench --workspace
+	$(BIN)/python -m benches.compare
+
+# Says which version is missing, before anything is built.
+toolchain:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2> /dev/null || \
+	    { echo "contactsense needs Python 3.10 or newer (found: $$($(PYTHON) --version 2>&1 || echo none)); set PYTHON=..." >&2; exit 1; }
+	@sh tools/check_rust.sh
+
+$(BIN)/maturin: | toolchain
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install -q --disable-pip-version-check 'maturin>=1.9.4,<2'
+
+# Installs the packages that the tests need, builds the release code, and links it into the environment.
+install: $(BIN)/maturin
+	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet --extras test
+
+clean:
+	rm -rf $(VENV) target

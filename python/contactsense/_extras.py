@@ -1,0 +1,12 @@
+"""Optional parts of the installation."""
+
+from __future__ import annotations
+
+from .errors import ContactSenseError
+
+
+class MissingExtraError(ContactSenseError, ImportError):
+    """A package of an optional part is not installed; the message says how to install the part."""
+
+    def __init__(self, package: str, extra: str) -> None:
+        super().__init__(f"{package} is not installed; get it with: pip install 'contactsense[{extra}]'")

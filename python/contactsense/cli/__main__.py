@@ -1,0 +1,5 @@
+"""`python -m contactsense.cli`."""
+
+from . import main
+
+main()

@@ -1,0 +1,89 @@
+"""What a loader hands on: the robot as plain names, numbers and arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ModelError
+
+FloatArray: TypeAlias = NDArray[np.float64]
+JointKind: TypeAlias = Literal["free_flyer", "revolute", "continuous", "prismatic"]
+GeometryKind: TypeAlias = Literal["mesh_file", "mesh", "box", "cylinder", "sphere", "capsule"]
+
+SUPPORTED_JOINTS = "revolute, continuous, prismatic, fixed, and a free flyer as the root"
+
+
+class JointTuple(NamedTuple):
+    """A moving joint with the rigid body behind it; everything in the joint's own frame, SI units."""
+
+    name: str
+    parent: int  # 0 = world, k = k-th joint
+    kind: JointKind
+    axis: FloatArray  # (3,), unit; zero for a free flyer
+    placement: FloatArray  # (4, 4), in the parent joint's frame
+    mass: float
+    com: FloatArray  # (3,)
+    inertia: FloatArray  # (3, 3), about the centre of mass
+    armature: float
+    lower: float  # -inf where unlimited
+    upper: float
+    effort: float  # inf where unlimited
+
+
+class GeometryTuple(NamedTuple):
+    """A shape of a link.
+
+    `params` by `kind`: "mesh_file" (path, scale (3,)); "mesh" (vertices (n, 3), triangles (m, 3) uint32);
+    "box" (x, y, z), full extents; "cylinder" (radius, length); "sphere" (radius,);
+    "capsule" (radius, length of the cylindrical part). Cylinders and capsules lie along their z axis.
+    A scale may be negative: the file's mesh is then mirrored, and with a negative product turned inside out.
+    """
+
+    kind: GeometryKind
+    params: tuple[Any, ...]
+    placement: FloatArray  # (4, 4), in the link's frame
+
+
+class LinkTuple(NamedTuple):
+    """A link: a named frame fixed to a joint, with its shapes."""
+
+    name: str
+    joint: int  # 0 = world, k = k-th joint
+    placement: FloatArray  # (4, 4), in the joint's frame
+    geometry: list[GeometryTuple]
+
+
+@dataclass(frozen=True)
+class RobotDescription:
+    """A checked robot: joints in the order of Pinocchio's model, links depth-first."""
+
+    name: str
+    joints: list[JointTuple]
+    links: list[LinkTuple]
+    gravity: FloatArray  # (3,), world frame [m/s^2]
+    warnings: list[str]
+
+
+def check_finite(joints: list[JointTuple], links: list[LinkTuple]) -> None:
+    """`ModelError` where a placement or inertia is not finite: finite numbers can overflow when composed."""
+    for joint in joints:
+        _require_finite(f"joint '{joint.name}'", *joint[3:9])
+    for link in links:
+        _require_finite(f"link '{link.name}'", link.placement, *(shape.placement for shape in link.geometry))
+
+
+def name_list(names: list[str], limit: int = 12) -> str:
+    """Names for a message, quoted; a long list is cut and says by how many."""
+    shown = ", ".join(f"'{name}'" for name in names[:limit])
+    return shown if len(names) <= limit else f"{shown} and {len(names) - limit} more"
+
+
+def _require_finite(owner: str, *values: float | FloatArray) -> None:
+    if not all(np.isfinite(value).all() for value in values):
+        raise ModelError(
+            f"{owner}: its placement or inertia is not finite; check the magnitudes in the description"
+        )

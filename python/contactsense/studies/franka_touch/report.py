@@ -1,0 +1,150 @@
+"""The study as a table and as data."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from .study import Evaluation, Study
+from .summary import Summary, most_frequent, summarise
+from .touches import EARLY, TouchResult
+
+SOURCES = {"measured": "momentum observer on measured torques", "vendor": "the vendor's external torque"}
+FIGURES = (
+    "felt",
+    "early",
+    "onset\nms",
+    "false\n/min",
+    "exact",
+    "near",
+    "most",
+    "agree",
+    "point",
+    "apart\nmm",
+)
+
+
+def print_study(study: Study, console: Console, *, touches: bool = False) -> None:
+    """Both evaluations as tables, and how to read them; `touches` adds a table of every touch."""
+    if touches:
+        console.print(touch_table(study))
+        console.print()
+    for evaluation in (study.measured, study.vendor):
+        console.print(table(evaluation))
+        console.print()
+    repeated = np.mean([log.repeated for log in study.logs])
+    notes = (
+        "* Settings were chosen on these files alone.",
+        "Onset (median/greatest): after the label's begin. Labels are by hand: an onset",
+        f"up to {EARLY:g} s before belongs to the touch, and is counted as early too.",
+        "False: onsets at any other time, per minute of it.",
+        "Exact, near: touches whose link is named right, or as it or a neighbour.",
+        "Most, agree: the link named most, its share. Point: located (+ behind a link).",
+        "Apart: RMS distance of a file's located points from their mean.",
+        f"{repeated:.0%} of the rows repeat the row before; the monitor was given all of them.",
+    )
+    console.print("\n".join(notes), style="dim", highlight=False)
+
+
+def table(evaluation: Evaluation) -> Table:
+    """One row a file."""
+    title = f"Franka touches, {SOURCES[evaluation.settings.source]}"
+    result = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, padding=0, show_edge=False)
+    result.add_column("file\nlink", no_wrap=True)
+    for name in FIGURES:
+        result.add_column(name, justify="right", no_wrap=True)
+    for log in evaluation.logs:
+        link, _ = most_frequent(log.touches)
+        cells = _cells(summarise([log]), "-" if link is None else str(link))
+        result.add_row(f"{log.name}{'*' if log.tuning else ' '} {log.link}", *cells)
+    result.add_section()
+    if any(not log.tuning for log in evaluation.logs):
+        result.add_row("held out", *_cells(evaluation.held_out, ""))
+    result.add_row("all", *_cells(evaluation.overall, ""), style="bold")
+    return result
+
+
+def touch_table(study: Study) -> Table:
+    """One row a touch, both evaluations side by side."""
+    result = Table(
+        title="Every touch", title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), show_edge=False
+    )
+    for name in ("file", "link", "label, s"):
+        result.add_column(name, no_wrap=True)
+    for name in ("observer:\nonset, ms", "link\nnamed", "vendor:\nonset, ms", "link\nnamed"):
+        result.add_column(name, justify="right", no_wrap=True)
+    for own, other in zip(study.measured.logs, study.vendor.logs, strict=True):
+        for mine, theirs in zip(own.touches, other.touches, strict=True):
+            label = f"{mine.start:.2f} to {mine.end:.2f}"
+            cells = [cell for touch in (mine, theirs) for cell in _touch_cells(touch, own.link)]
+            result.add_row(own.name + ("*" if own.tuning else ""), str(own.link), label, *cells)
+        result.add_section()
+    return result
+
+
+def _touch_cells(touch: TouchResult, link: int) -> tuple[Text, Text]:
+    delay = Text("not felt", "red") if touch.delay is None else Text(f"{1e3 * touch.delay:.0f}")
+    place = "+" if touch.located else " "
+    named = Text(
+        "-" if touch.link is None else f"{touch.link}{place}", "green" if touch.link == link else "red"
+    )
+    return delay, named
+
+
+def _cells(figures: Summary, named: str) -> list[str]:
+    scatter = f"{1e3 * figures.scatter:.0f}" if math.isfinite(figures.scatter) else "-"
+    onset = f"{1e3 * figures.delay_median:.0f}/{1e3 * figures.delay_max:.0f}" if figures.detected else "-"
+    return [
+        f"{figures.detected}/{figures.touches}",
+        f"{figures.early}",
+        onset,
+        f"{figures.false_alarms_per_minute:.1f}",
+        f"{figures.exact:.0%}",
+        f"{figures.within_one:.0%}",
+        named,
+        f"{figures.agreement:.0%}",
+        f"{figures.located:.0%}",
+        scatter,
+    ]
+
+
+def as_data(study: Study) -> dict[str, Any]:
+    """Everything as plain data for JSON: SI units, null where a figure is undefined."""
+    return {
+        "study": "franka_touch",
+        "measured": _evaluation_data(study.measured),
+        "vendor": _evaluation_data(study.vendor),
+    }
+
+
+def _evaluation_data(evaluation: Evaluation) -> dict[str, Any]:
+    files = [{**asdict(log), "summary": asdict(summarise([log]))} for log in evaluation.logs]
+    held_out = [log for log in evaluation.logs if not log.tuning]
+    data: dict[str, Any] = _plain(
+        {
+            "settings": asdict(evaluation.settings),
+            "files": files,
+            "held_out": asdict(evaluation.held_out) if held_out else None,
+            "overall": asdict(evaluation.overall),
+        }
+    )
+    return data
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _plain(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(entry) for entry in value]
+    if isinstance(value, np.ndarray):
+        return _plain(value.tolist())
+    if isinstance(value, float):
+        return float(value) if math.isfinite(value) else None
+    return value

@@ -1,0 +1,60 @@
+"""What the monitor was set to, and where that comes from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from .logs import FloatArray
+
+# Momentum observer on measured torques, or the external torque that the vendor computes.
+Source = Literal["measured", "vendor"]
+
+# The marks farthest from the base and nearest to it. Settings come from these alone; the rest is held out.
+TUNING_FILES = ("a4", "f2")
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Settings for all files and touches alike."""
+
+    source: Source
+    noise: tuple[float, ...]  # (7,) standard deviation of the external torque of an untouched arm [Nm]
+    observer_gain: float  # [1/s]
+    detection_factor: float  # threshold of detection / noise
+    isolation_factor: float  # threshold of isolation, on a mean over a part of a touch / noise
+    hold_time: float  # [s]
+    bias_time_constant: float  # [s]
+
+    @property
+    def detection_threshold(self) -> FloatArray:
+        """`(7,)` [Nm]."""
+        return self.detection_factor * np.array(self.noise)
+
+    @property
+    def isolation_threshold(self) -> FloatArray:
+        """`(7,)` [Nm]."""
+        return self.isolation_factor * np.array(self.noise)
+
+
+# As `choose_settings` finds them on the tuning files.
+MEASURED = Settings(
+    source="measured",
+    noise=(0.059, 0.056, 0.044, 0.032, 0.0028, 0.0056, 0.013),
+    observer_gain=30.0,
+    detection_factor=15.0,
+    isolation_factor=2.5,
+    hold_time=0.02,
+    bias_time_constant=1.0,
+)
+VENDOR = Settings(
+    source="vendor",
+    noise=(0.0084, 0.0092, 0.0062, 0.0071, 0.00085, 0.0012, 0.0015),
+    observer_gain=1e5,
+    detection_factor=60.0,
+    isolation_factor=5.0,
+    hold_time=0.02,
+    bias_time_constant=0.5,
+)

@@ -1,0 +1,108 @@
+//! Any input gives an answer or an error: nothing panics, and an error leaves the state as it was.
+
+use contactsense::isolation::{ContactIsolator, IsolatorOptions};
+use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
+use contactsense::observer::MomentumObserver;
+use contactsense::Error;
+use proptest::prelude::*;
+
+mod common;
+
+/// Numbers of any size, now and then no number.
+fn any_number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        8 => -10.0..10.0,
+        1 => proptest::num::f64::ANY,
+        1 => Just(0.0),
+    ]
+}
+
+fn vector(length: usize) -> impl Strategy<Value = Vec<f64>> {
+    prop_oneof![
+        9 => proptest::collection::vec(any_number(), length),
+        1 => proptest::collection::vec(any_number(), 0..length + 3),
+    ]
+}
+
+fn sensible(values: &[f64], length: usize) -> bool {
+    values.len() == length && values.iter().all(|x| x.abs() < 1e60)
+}
+
+fn options() -> MonitorOptions {
+    MonitorOptions {
+        dt: 1e-3,
+        observer_gain: vec![500.0],
+        isolation: IsolatorOptions { torque_threshold: vec![0.1], ..IsolatorOptions::default() },
+        hold_time: 0.01,
+        bias_time_constant: Some(0.003),
+        bias_settle_time: None,
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(500))]
+
+    #[test]
+    fn the_observer_refuses_or_answers(v in vector(7), tau in vector(7), dt in any_number()) {
+        let robot = common::arm();
+        let q = common::configuration(&robot, 0.2);
+        let mut observer = MomentumObserver::new(robot.clone(), 1e-3, &[100.0]).unwrap();
+        let calm = vec![0.1; 7];
+        observer.update(&q, &calm, &calm, None, None).unwrap();
+        let before = observer.update(&q, &calm, &calm, None, None).unwrap().to_vec();
+        let good = sensible(&v, 7) && sensible(&tau, 7) && (1e-9..=1e9).contains(&dt);
+        let outcome = observer.update(&q, &v, &tau, None, Some(dt)).map(<[f64]>::to_vec);
+        match outcome {
+            Ok(torque) => {
+                prop_assert!(good);
+                prop_assert_eq!(torque.len(), 7);
+            }
+            Err(error) => {
+                prop_assert!(!good && matches!(error, Error::Input(_)), "{error}");
+                prop_assert_eq!(observer.external_torque(), &before[..]);
+            }
+        }
+    }
+
+    #[test]
+    fn the_isolator_refuses_or_answers(tau_ext in vector(31), seed in -5.0..5.0) {
+        let robot = common::humanoid();
+        let q = common::configuration(&robot, seed);
+        let nv = robot.nv();
+        let mut isolator = ContactIsolator::new(robot.clone(), &IsolatorOptions::default()).unwrap();
+        let tau_ext: Vec<f64> = tau_ext.into_iter().chain(std::iter::repeat(0.0)).take(nv).collect();
+        let good = sensible(&tau_ext, nv);
+        match isolator.isolate(&q, &tau_ext) {
+            Ok(isolation) => {
+                prop_assert!(good);
+                for contact in &isolation.contacts {
+                    prop_assert!(!contact.located || contact.point.iter().all(|x| x.is_finite()));
+                    prop_assert!(robot.touchable_links().contains(&contact.link));
+                }
+            }
+            Err(error) => prop_assert!(!good && matches!(error, Error::Input(_)), "{error}"),
+        }
+    }
+
+    #[test]
+    fn the_monitor_refuses_or_answers(ticks in proptest::collection::vec((vector(7), vector(7)), 1..20)) {
+        let robot = common::arm();
+        let q = common::configuration(&robot, 0.2);
+        let mut monitor = ContactMonitor::new(robot.clone(), &options()).unwrap();
+        let mut report = ContactReport::default();
+        for (v, tau) in ticks {
+            monitor.report_into(&mut report);
+            let before = report.clone();
+            let good = sensible(&v, 7) && sensible(&tau, 7);
+            match monitor.update(&q, &v, &tau, None) {
+                Ok(()) => prop_assert!(good),
+                Err(error) => {
+                    prop_assert!(!good && matches!(error, Error::Input(_)), "{error}");
+                    monitor.report_into(&mut report);
+                    // Debug text, because an open point is NaN and NaN differs from itself.
+                    prop_assert_eq!(format!("{:?}", &report), format!("{:?}", &before));
+                }
+            }
+        }
+    }
+}

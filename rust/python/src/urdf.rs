@@ -1,0 +1,43 @@
+//! The core's own URDF reader, for comparison with the package's.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use contactsense::robot::{Robot, UrdfGeometry, UrdfOptions};
+use nalgebra::Vector3;
+use pyo3::prelude::*;
+
+use crate::errors::{input, to_python};
+use crate::robot::PyRobot;
+
+/// A robot read without Pinocchio; `locked` is `{name: position or None}`.
+#[pyfunction]
+#[pyo3(signature = (path, package_dirs=vec![], floating_base=false, locked=HashMap::new(), geometry="collision",
+                    gravity=[0.0, 0.0, -9.81]))]
+pub fn _robot_from_urdf(
+    py: Python<'_>,
+    path: PathBuf,
+    package_dirs: Vec<PathBuf>,
+    floating_base: bool,
+    locked: HashMap<String, Option<f64>>,
+    geometry: &str,
+    gravity: [f64; 3],
+) -> PyResult<PyRobot> {
+    let geometry = match geometry {
+        "collision" => UrdfGeometry::Collision,
+        "visual" => UrdfGeometry::Visual,
+        other => {
+            return Err(input(py, format!("geometry must be 'collision' or 'visual', not '{other}'")));
+        }
+    };
+    let options = UrdfOptions {
+        package_dirs,
+        floating_base,
+        locked_joints: locked.into_iter().collect(),
+        geometry,
+        gravity: Vector3::from(gravity),
+    };
+    let robot = py.detach(|| Robot::from_urdf(path, &options));
+    Ok(PyRobot(Arc::new(robot.map_err(|error| to_python(py, error))?)))
+}

@@ -1,0 +1,89 @@
+"""Examples and snippets of README and pages run; the table of equations names functions that exist."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+SNIPPET = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+LINK = re.compile(r"\]\((?!https?://)([^)#]+)(?:#[^)]*)?\)")
+FUNCTION = re.compile(r"`([\w/]+\.rs)::(\w+)`")
+LONGEST = {"examples": 60, "docs": 120}
+
+# What each example must have found out, as a pattern of its output.
+FINDINGS = {
+    "own_robot.py": r"warning: .*'elbow'(.|\n)*warning: .*'lower'(.|\n)*refused: link 'upper'",
+    "surface_queries.py": r"watertight: True(.|\n)*ray 0: in .*\nray 0: out .*\n1000 samples",
+    "touch_in_simulation.py": r"felt [1-9] ms (.|\n)*iiwa_link_7, located: True\npoint error: [0-4]\.",
+    "touch_on_a_log.py": r"from 2\.0.*iiwa_link_7, 3[012] N.*\n.*from 4\.0.*iiwa_link_7, 3[012] N.*\n$",
+}
+
+
+def run(*arguments: str, folder: Path) -> str:
+    """Runs Python with warnings as errors, in an empty folder; what it prints."""
+    command = [sys.executable, "-W", "error", *arguments]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    return done.stdout
+
+
+def test_every_example_has_findings() -> None:
+    assert [path.name for path in EXAMPLES] == sorted(FINDINGS)
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.name)
+def test_example_runs(path: Path, tmp_path: Path) -> None:
+    if path.name == "touch_in_simulation.py":
+        pytest.importorskip("mujoco")
+    printed = run(str(path), folder=tmp_path)
+    assert re.search(FINDINGS[path.name], printed), printed
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_readme_snippet_finds_the_touch(tmp_path: Path) -> None:
+    (snippet,) = SNIPPET.findall(PAGES[0].read_text(encoding="utf-8"))
+    printed = run("-c", snippet, folder=tmp_path)
+    assert re.search(r"^touched at 0\.50\d s\niiwa_link_6 \[0\.51\d* +0\.01\d* +0\.60\d*\]", printed), printed
+
+
+@pytest.mark.parametrize(
+    "page",
+    [page for page in PAGES[1:] if SNIPPET.search(page.read_text(encoding="utf-8"))],
+    ids=lambda page: page.stem,
+)
+def test_page_snippets_run(page: Path, tmp_path: Path) -> None:
+    if page.stem == "simulation":
+        pytest.importorskip("mujoco")
+    run("-c", "\n".join(SNIPPET.findall(page.read_text(encoding="utf-8"))), folder=tmp_path)
+
+
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "CONTRIBUTING.md"], ids=lambda page: page.name)
+def test_links_lead_somewhere(page: Path) -> None:
+    missing = [
+        link for link in LINK.findall(page.read_text(encoding="utf-8")) if not (page.parent / link).exists()
+    ]
+    assert missing == []
+
+
+def test_equations_name_functions_that_exist() -> None:
+    named = FUNCTION.findall((ROOT / "docs" / "equations.md").read_text(encoding="utf-8"))
+    assert len(named) > 10
+    for file, function in named:
+        code = (ROOT / "rust" / "core" / "src" / file).read_text(encoding="utf-8")
+        assert re.search(rf"\bfn {function}\b", code), f"{file} has no function {function}"
+
+
+@pytest.mark.parametrize("folder", LONGEST)
+def test_pages_and_examples_are_short(folder: str) -> None:
+    files = [path for path in (ROOT / folder).iterdir() if path.suffix in (".md", ".py")]
+    assert files
+    for path in files:
+        assert len(path.read_text(encoding="utf-8").splitlines()) < LONGEST[folder], path.name
