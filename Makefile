@@ -31,7 +31,7 @@ python-test: install
 bench: install
 	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet --extras bench
 	cargo bench --workspace
-	$(BIN)/python benches/compare/run.py
+	$(BIN)/python -m benches.compare
 
 # Says which version is missing, before anything is built.
 toolchain:

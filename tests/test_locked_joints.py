@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pinocchio as pin
 import pytest
-from urdf_text import ARM, write
+from urdf_text import ARM, joint, link, robot, write
 
 from contactsense.errors import InputError
 from contactsense.loading.describe_urdf import describe_urdf
@@ -19,8 +19,8 @@ def arm(tmp_path):
 def world_poses(description):
     """Link poses with every remaining joint at neutral."""
     joints = [np.eye(4)]
-    for joint in description.joints:
-        joints.append(joints[joint.parent] @ joint.placement)
+    for each in description.joints:
+        joints.append(joints[each.parent] @ each.placement)
     return {link.name: joints[link.joint] @ link.placement for link in description.links}
 
 
@@ -77,3 +77,16 @@ def test_bad_names_list_the_valid_ones(arm, locked):
 def test_bad_position_names_the_joint(arm, position):
     with pytest.raises(InputError, match="'elbow' must be a finite number"):
         describe_urdf(arm, locked_joints={"elbow": position})
+
+
+def test_a_joint_may_share_its_links_name(tmp_path):
+    text = robot(
+        link("base"),
+        link("wrist"),
+        link("tool"),
+        joint("wrist", "base", "wrist"),
+        joint("tool", "wrist", "tool"),
+    )
+    description = describe_urdf(write(tmp_path, text), locked_joints=["wrist"])
+    assert [joint.name for joint in description.joints] == ["tool"]
+    assert [link.name for link in description.links] == ["base", "wrist", "tool"]

@@ -131,9 +131,6 @@ def test_visual_geometry(file):
 
 @pytest.mark.parametrize("path", ROBOTS)
 def test_locked_joints(path, tmp_path):
-    joints = {entry.get("name") for entry in ElementTree.parse(path).getroot().findall("joint")}
-    if joints & set(frames_of(path)):
-        pytest.skip("Pinocchio locks no joints where a joint and a link share a name")
     copy = without_shapes(path, tmp_path)
     names = load_both(copy)[1].joint_names
     rng = np.random.default_rng(2)

@@ -293,9 +293,15 @@ def test_any_finite_ray_has_an_answer(origin: list[float], direction: list[float
     surface = cs.Robot.named("iiwa14").surface("iiwa_link_3")
     sizes = [max(abs(x) for x in vector) for vector in (origin, direction)]
     if max(sizes) >= 1e60 or sizes[1] < np.finfo(float).tiny:
-        with pytest.raises(cs.InputError, match="origins|directions"):
+        with pytest.raises(cs.InputError, match=r"origins|directions"):
             surface.cast_rays(origin, direction)
         return
     hits = surface.cast_rays(origin, direction)
     assert np.isfinite(hits.point).all()
     assert np.isfinite(surface.closest_points(origin).points).all()
+
+
+def test_deeply_nested_collada_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "deep.dae").write_text("<COLLADA>" * 100_000 + "</COLLADA>" * 100_000)
+    with pytest.raises(cs.GeometryError, match="nested"):
+        surface_of(tmp_path, '<mesh filename="deep.dae"/>')

@@ -8,9 +8,10 @@ from typing import Annotated
 import typer
 
 from .. import ContactSenseError, __version__
+from ..demo import command as demo
 from . import study
 
-COMMANDS = (study,)
+COMMANDS = (demo, study)
 
 app = typer.Typer(
     name="contactsense",

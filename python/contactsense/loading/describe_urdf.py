@@ -24,6 +24,7 @@ from .shapes import link_shapes
 from .urdf_tree import UrdfTree, read_urdf
 
 _ROOT_JOINT = "root_joint"  # Pinocchio's name for the joint it adds
+_LINK = "link:"  # keeps a link apart from a joint of the same name, which Pinocchio cannot lock
 
 
 def describe_urdf(
@@ -60,12 +61,11 @@ def describe_urdf(
     model, lock_warnings = lock_joints(full, tree, locked_joints)
     joints = joints_of(model)
     placed = {link.name: link for _, link in links_of(model)}
-    links = [
-        placed[link.name]._replace(
-            geometry=link_shapes(tree.links[link.name].element, link.name, geometry, meshes)
-        )
-        for _, link in links_of(full)
-    ]
+    links = []
+    for _, link in links_of(full):
+        name = link.name.removeprefix(_LINK)
+        shapes = link_shapes(tree.links[name].element, name, geometry, meshes)
+        links.append(placed[link.name]._replace(name=name, geometry=shapes))
     check_finite(joints, links)
     check_bodies(joints, links)
     warnings += lock_warnings + check_mass_matrix(model) + _no_surface(links, geometry)
@@ -112,7 +112,7 @@ def _kinematic_xml(tree: UrdfTree) -> str:
     """The URDF reduced to what the kinematics and inertias need, every number checked."""
     robot = Element("robot", name=tree.name)
     for link in tree.links.values():
-        element = SubElement(robot, "link", name=link.name)
+        element = SubElement(robot, "link", name=_LINK + link.name)
         if link.inertial is not None:
             inertial = SubElement(element, "inertial")
             _origin(inertial, link.inertial.xyz, link.inertial.rpy)
@@ -120,8 +120,8 @@ def _kinematic_xml(tree: UrdfTree) -> str:
             SubElement(inertial, "inertia", _texts(link.inertial.moments))
     for joint in tree.joints.values():
         element = SubElement(robot, "joint", name=joint.name, type=joint.kind)
-        SubElement(element, "parent", link=joint.parent)
-        SubElement(element, "child", link=joint.child)
+        SubElement(element, "parent", link=_LINK + joint.parent)
+        SubElement(element, "child", link=_LINK + joint.child)
         SubElement(element, "axis", xyz=_row(joint.axis))
         _origin(element, joint.xyz, joint.rpy)
         if joint.limit is not None:

@@ -1,5 +1,6 @@
 //! contactsense: a robot's sense of touch over its whole body, from joint positions, velocities and torques.
 #![warn(missing_docs)]
+#![allow(rustdoc::broken_intra_doc_links)] // units such as [m] look like links
 
 pub mod detection;
 pub mod error;
@@ -9,5 +10,6 @@ pub mod observer;
 pub mod robot;
 pub mod spatial;
 pub mod surface;
+mod xml_nesting;
 
 pub use error::{Error, Result};

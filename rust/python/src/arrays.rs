@@ -109,7 +109,9 @@ pub fn from_rows<const N: usize>(
     rows: impl ExactSizeIterator<Item = [f64; N]>,
 ) -> PyResult<Bound<'_, PyArray2<f64>>> {
     let count = rows.len();
-    let flat: Vec<f64> = rows.flatten().collect();
+    // Flattened iterators do not know their length.
+    let mut flat = Vec::with_capacity(count * N);
+    rows.for_each(|row| flat.extend_from_slice(&row));
     PyArray1::from_vec(py, flat).reshape([count, N])
 }
 

@@ -1,5 +1,7 @@
 //! Python classes of contactsense: checks and converts, holds no algorithm.
 
+#![allow(rustdoc::broken_intra_doc_links)] // units such as [m] look like links; docstrings show the text as it is
+
 use pyo3::prelude::*;
 
 mod arrays;

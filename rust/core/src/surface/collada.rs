@@ -14,6 +14,7 @@ const MAX_NESTING: usize = 64;
 
 /// Vertices (m) and triangles of the document's scene. The up axis is ignored, as ROS does.
 pub(super) fn parse(text: &str) -> Result<Soup> {
+    crate::xml_nesting::check(text)?;
     let document = Document::parse(text).map_err(|error| error.to_string())?;
     let root = document.root_element();
     let ids = root.descendants().filter_map(|n| n.attribute("id").map(|id| (id, n))).collect();

@@ -209,10 +209,9 @@ impl Slabs {
         let mut far = [f32::INFINITY; 4];
         for k in 0..3 {
             let (origin, inverse) = (self.origin[k], self.inverse[k]);
-            let a = node.low[k].map(|x| (x - origin) * inverse);
-            let b = node.high[k].map(|x| (x - origin) * inverse);
-            near = larger(near, smaller(a, b));
-            far = smaller(far, larger(a, b));
+            let (first, last) = if inverse > 0.0 { (&node.low, &node.high) } else { (&node.high, &node.low) };
+            near = larger(near, first[k].map(|x| (x - origin) * inverse));
+            far = smaller(far, last[k].map(|x| (x - origin) * inverse));
         }
         (0..4).fold(0, |bits, lane| bits | u32::from(near[lane] <= far[lane]) << lane)
     }

@@ -8,7 +8,6 @@ mod guard;
 mod inertia;
 mod lock;
 mod meshes;
-mod nesting;
 mod numbers;
 mod oddities;
 mod shapes;

@@ -6,7 +6,7 @@ const DEEPEST: usize = 200;
 /// Refuses text that nests too deep, or that declares a document type, whose entities could nest unseen.
 ///
 /// Follows well-formed text exactly; where it is not well-formed the parser stops.
-pub(super) fn check(text: &str) -> Result<(), String> {
+pub(crate) fn check(text: &str) -> Result<(), String> {
     let mut rest = text;
     let mut depth = 0_usize;
     while let Some(start) = rest.find('<') {

@@ -1,0 +1,102 @@
+"""Interleaved timing: every contestant in every round, so that a noisy moment strikes all of them.
+
+The clock counts the time that this process spends on its core, not what others take from it; on a quiet
+machine that is the time on the wall. No contestant waits for anything.
+"""
+
+from __future__ import annotations
+
+import time
+import timeit
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Contestant:
+    """A statement to time; one run of it does `count` operations."""
+
+    name: str
+    statement: str
+    names: Mapping[str, Any]
+    count: int = 1
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Time of one operation [us], one sample a round."""
+
+    name: str
+    samples: NDArray[np.float64]
+
+    @property
+    def median(self) -> float:
+        return float(np.median(self.samples))
+
+    @property
+    def spread(self) -> tuple[float, float]:
+        """The 10th and 90th percentile [us]."""
+        low, high = np.percentile(self.samples, [10, 90])
+        return float(low), float(high)
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How long to measure."""
+
+    rounds: int
+    round_time: float  # of one contestant [s]
+    contacts: int  # places that the monitors are touched at
+    clock: Callable[[], float] = time.process_time
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """The timings of one task, ours first, and what is asked of them."""
+
+    task: str
+    timings: Sequence[Timing]
+    max_us: float | None = None  # of ours
+    min_ratio: float | None = None  # of the second to ours
+
+    def ratio(self, timing: Timing) -> float:
+        """Of the medians: how many times as long as ours it takes."""
+        return timing.median / self.timings[0].median
+
+    def ratio_spread(self, timing: Timing) -> tuple[float, float]:
+        """The 10th and 90th percentile of the ratio within a round."""
+        low, high = np.percentile(timing.samples / self.timings[0].samples, [10, 90])
+        return float(low), float(high)
+
+    @property
+    def passed(self) -> bool | None:
+        """None where nothing is asked."""
+        if self.max_us is None and self.min_ratio is None:
+            return None
+        fast = self.max_us is None or self.timings[0].median <= self.max_us
+        return fast and (self.min_ratio is None or self.ratio(self.timings[1]) >= self.min_ratio)
+
+
+def interleave(contestants: Sequence[Contestant], pace: Pace) -> list[Timing]:
+    """Times all contestants round by round, every other round in reverse order."""
+    timers = [timeit.Timer(c.statement, timer=pace.clock, globals=dict(c.names)) for c in contestants]
+    runs = [_runs(timer, pace.round_time) for timer in timers]
+    samples = np.empty((len(contestants), pace.rounds))
+    for index in range(pace.rounds):
+        order = range(len(contestants))
+        for k in order if index % 2 == 0 else reversed(order):
+            seconds = timers[k].timeit(runs[k])
+            samples[k, index] = 1e6 * seconds / (runs[k] * contestants[k].count)
+    return [Timing(c.name, row) for c, row in zip(contestants, samples, strict=True)]
+
+
+def _runs(timer: timeit.Timer, round_time: float) -> int:
+    """Runs of the statement that fill a round; warms up by the way."""
+    runs = 1
+    while (seconds := timer.timeit(runs)) < 0.5 * round_time:
+        runs *= 2
+    return max(1, round(runs * round_time / seconds))

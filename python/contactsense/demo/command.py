@@ -1,0 +1,48 @@
+"""`contactsense demo`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from . import as_data, require, run, save_picture
+
+
+def register(parent: typer.Typer) -> None:
+    """Adds `demo` to the command line."""
+    parent.command("demo")(command)
+
+
+def command(
+    robot: Annotated[str, typer.Option(help="Robot to simulate: iiwa14.")] = "iiwa14",
+    seed: Annotated[int, typer.Option(help="Of motion, hits and noise; same seed, same result.")] = 0,
+    noise: Annotated[
+        tuple[float, float],
+        typer.Option(help="Standard deviation of the measured torques: percent of the torque, and Nm."),
+    ] = (0.0, 0.0),
+    gain: Annotated[
+        float | None, typer.Option(help="Observer gain [1/s]; by default 500, with noise 250.")
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Picture to write.")] = Path("contactsense_demo.png"),
+    as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON only.")] = False,
+) -> None:
+    """Hit a simulated arm in fast motion; show what it feels against the truth."""
+    require("mujoco", "matplotlib", "rich")
+    from rich.console import Console
+
+    from .table import live_table, print_result
+
+    console = Console()
+    if as_json or not console.is_terminal:
+        result = run(robot=robot, seed=seed, noise=noise, gain=gain)
+    else:
+        with live_table(console) as show:
+            result = run(robot=robot, seed=seed, noise=noise, gain=gain, on_progress=show)
+    picture = save_picture(result, out)
+    if as_json:
+        print(json.dumps({**as_data(result), "picture": str(picture)}, indent=2, allow_nan=False))
+    else:
+        print_result(console, result, str(picture))

@@ -1,0 +1,169 @@
+"""What a demo run gives: every hit's truth against the estimate, and the signals over time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .settings import FloatArray, Noise, Settings
+
+if TYPE_CHECKING:
+    from ..robot import Robot
+
+
+@dataclass(frozen=True)
+class HitResult:
+    """One hit and what the monitor said of it at its strongest moment.
+
+    That moment is the tick of the detected contact with the largest torque in thresholds; it is chosen
+    without the truth. Errors are None where there is no estimate.
+    """
+
+    number: int  # from 1
+    start: float  # [s]
+    duration: float  # [s]
+    link: str  # truly hit
+    force: float  # true peak [N]
+    delay: float | None  # from the start of the force to detection [s]; None: missed
+    named: str | None  # the link that the monitor names
+    located: bool  # whether it gives a point
+    time: float | None  # strongest moment [s]
+    point_error: float | None  # to the true point at that moment [m]
+    point_std: float | None  # the monitor's own standard deviation of the point [m]
+    force_error: float | None  # |estimate - true peak| / |true peak|, of the vectors
+    q: FloatArray  # at the strongest moment, or at the hit's middle if missed
+    true_point: FloatArray  # (3,) then [m]
+    true_force: FloatArray  # (3,) at its peak, direction as then [N]
+    point: FloatArray | None  # (3,) estimated [m]
+    estimated_force: FloatArray | None  # (3,) [N]
+
+    @property
+    def link_right(self) -> bool:
+        return self.named == self.link
+
+
+@dataclass(frozen=True)
+class Signals:
+    """One row a tick."""
+
+    time: FloatArray  # (n,) [s]
+    true_torque: FloatArray  # (n, nv) external torque [Nm]
+    torque: FloatArray  # (n, nv) its estimate [Nm]
+    true_force: FloatArray  # (n,) magnitude [N]
+    force: FloatArray  # (n,) of the located contact, NaN where there is none [N]
+    collision: NDArray[np.bool_]  # (n,)
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Of a call to `ContactMonitor.update` from Python."""
+
+    calls: int
+    mean: float  # [s]
+    median: float  # [s]
+    max: float  # [s]
+
+
+@dataclass(frozen=True)
+class DemoResult:
+    """A run."""
+
+    robot_name: str
+    robot: Robot
+    seed: int
+    noise: Noise
+    settings: Settings
+    planned_speed: float  # fastest joint of the planned motion [rad/s]
+    hits: tuple[HitResult, ...]
+    false_alarms: int
+    signals: Signals
+    timing: Timing
+
+    @property
+    def detected(self) -> int:
+        return sum(hit.delay is not None for hit in self.hits)
+
+    @property
+    def links_right(self) -> int:
+        return sum(hit.link_right for hit in self.hits)
+
+    @property
+    def located(self) -> tuple[HitResult, ...]:
+        return tuple(hit for hit in self.hits if hit.located)
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Where a run is."""
+
+    time: float  # [s]
+    end: float  # [s]
+    hits: tuple[HitResult, ...]  # scored so far
+    planned: int
+    settings: Settings
+    sensed: str  # what the monitor says now, a link's name or empty
+
+
+def as_data(result: DemoResult) -> dict[str, Any]:
+    """Plain numbers and texts, for JSON; None where there is no estimate."""
+    return {
+        "robot": result.robot_name,
+        "seed": result.seed,
+        "noise": {"percent": result.noise.percent, "newton_metres": result.noise.newton_metres},
+        "planned_peak_speed": result.planned_speed,
+        "observer_gain": result.settings.observer_gain,
+        "torque_threshold": result.settings.torque_threshold.tolist(),
+        "hits": [_hit_data(hit) for hit in result.hits],
+        "summary": {
+            "hits": len(result.hits),
+            "detected": result.detected,
+            "links_named_right": result.links_right,
+            "located": len(result.located),
+            "located_on_wrong_link": sum(not hit.link_right for hit in result.located),
+            "median_point_error_mm": _median([hit.point_error for hit in result.located], 1e3),
+            "worst_point_error_mm": _worst([hit.point_error for hit in result.located], 1e3),
+            "median_force_error_percent": _median([hit.force_error for hit in result.located], 100.0),
+            "median_delay_ms": _median([hit.delay for hit in result.hits], 1e3),
+            "false_alarms": result.false_alarms,
+        },
+        "monitor": {
+            "calls": result.timing.calls,
+            "mean_us": 1e6 * result.timing.mean,
+            "median_us": 1e6 * result.timing.median,
+            "max_us": 1e6 * result.timing.max,
+        },
+    }
+
+
+def _hit_data(hit: HitResult) -> dict[str, Any]:
+    return {
+        "number": hit.number,
+        "start_s": hit.start,
+        "duration_ms": 1e3 * hit.duration,
+        "link": hit.link,
+        "peak_force_n": hit.force,
+        "delay_ms": _scaled(hit.delay, 1e3),
+        "named": hit.named,
+        "link_right": hit.link_right,
+        "located": hit.located,
+        "point_error_mm": _scaled(hit.point_error, 1e3),
+        "point_std_mm": _scaled(hit.point_std, 1e3),
+        "force_error_percent": _scaled(hit.force_error, 100.0),
+    }
+
+
+def _scaled(value: float | None, factor: float) -> float | None:
+    return None if value is None else factor * value
+
+
+def _median(values: list[float | None], factor: float) -> float | None:
+    known = [value for value in values if value is not None]
+    return factor * float(np.median(known)) if known else None
+
+
+def _worst(values: list[float | None], factor: float) -> float | None:
+    known = [value for value in values if value is not None]
+    return factor * max(known) if known else None

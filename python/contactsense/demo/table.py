@@ -1,0 +1,131 @@
+"""The table of hits, truth against estimate, live while the robot is hit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console, Group, RenderableType
+from rich.live import Live
+from rich.table import Table
+from rich.text import Text
+
+from .result import DemoResult, HitResult, Progress
+from .settings import DEVIATIONS, FLOOR, Settings
+
+# Header, and whether the column is aligned to the right.
+_COLUMNS = (
+    ("hit", True),
+    ("hit link", False),
+    ("force\n[N]", True),
+    ("named link", False),
+    ("point", False),
+    ("off by\n[mm]", True),
+    ("± said\n[mm]", True),
+    ("force\noff [%]", True),
+    ("delay\n[ms]", True),
+)
+_NOTES = (
+    "An estimate is that of the tick with the largest torques. Point off by: distance to the true point "
+    "then; ± said: the standard deviation that the monitor itself gives. Force off: the vector against the "
+    "true peak, including what the observer smooths away. Delay: from the start of the force to detection. "
+    "Open: fewer than six joints lie before the link, or torques are too small against their errors, to "
+    "tell point and force."
+)
+
+
+class LiveTable:
+    """Takes the progress of a run and shows it."""
+
+    def __init__(self, live: Live) -> None:
+        self._live = live
+
+    def __call__(self, progress: Progress) -> None:
+        sensed = Text(f"feels {progress.sensed}", style="bold yellow") if progress.sensed else Text("free")
+        status = Text(f"{progress.time:4.1f} of {progress.end:.0f} s   ").append_text(sensed)
+        self._live.update(Group(hit_table(progress.hits, progress.planned), status))
+
+
+@contextmanager
+def live_table(console: Console) -> Iterator[LiveTable]:
+    """Shows a table that is gone at the end; on a terminal only."""
+    with Live(console=console, transient=True, refresh_per_second=12) as live:
+        yield LiveTable(live)
+
+
+def hit_table(hits: Sequence[HitResult], rows: int = 0) -> Table:
+    """One row a hit, empty rows for those to come."""
+    table = Table(box=SIMPLE_HEAD, header_style="bold", pad_edge=False, padding=(0, 1, 0, 0))
+    for header, right in _COLUMNS:
+        table.add_column(header, justify="right" if right else "left", no_wrap=True)
+    for hit in hits:
+        table.add_row(*_cells(hit))
+    for number in range(len(hits) + 1, rows + 1):
+        table.add_row(f"[dim]{number}[/dim]", *[""] * (len(_COLUMNS) - 1))
+    return table
+
+
+def _cells(hit: HitResult) -> list[RenderableType]:
+    named: RenderableType
+    if hit.named is None:
+        named = Text("not felt" if hit.delay is None else "none", style="red")
+    else:
+        named = Text(hit.named, style="green" if hit.link_right else "red")
+    return [
+        str(hit.number),
+        hit.link,
+        f"{hit.force:.0f}",
+        named,
+        Text("found", style="green") if hit.located else Text("open", style="yellow"),
+        _number(hit.point_error, 1e3),
+        _number(hit.point_std, 1e3),
+        _number(hit.force_error, 100.0),
+        _number(hit.delay, 1e3),
+    ]
+
+
+def _number(value: float | None, factor: float) -> str:
+    return "-" if value is None else f"{factor * value:.1f}"
+
+
+def settings_text(settings: Settings) -> str:
+    """How the monitor is set."""
+    thresholds = " ".join(f"{threshold:.2f}" for threshold in settings.torque_threshold)
+    return (
+        f"Observer gain {settings.observer_gain:.0f}/s; torque thresholds {thresholds} Nm: the larger of "
+        f"{FLOOR:g} Nm and {DEVIATIONS:g} standard deviations of the observed torque at the stated noise"
+    )
+
+
+def print_result(console: Console, result: DemoResult, picture: str) -> None:
+    """The whole answer, for people."""
+    noise = result.noise
+    console.print(
+        f"{result.robot_name} at up to {result.planned_speed:.1f} rad/s, seed {result.seed}, "
+        f"torque noise {noise.percent:g} % and {noise.newton_metres:g} Nm",
+        highlight=False,
+    )
+    console.print(settings_text(result.settings), highlight=False)
+    console.print(hit_table(result.hits))
+    console.print(_NOTES, style="dim", highlight=False)
+    console.print(summary_text(result), highlight=False, style="bold")
+    console.print(f"Picture: {picture}", highlight=False, soft_wrap=True)
+
+
+def summary_text(result: DemoResult) -> str:
+    """One line or two."""
+    located = result.located
+    text = (
+        f"{result.detected} of {len(result.hits)} hits felt, {result.links_right} links named right, "
+        f"{len(located)} located"
+    )
+    errors = sorted(1e3 * hit.point_error for hit in located if hit.point_error is not None)
+    if errors:
+        text += f" (point error {errors[len(errors) // 2]:.1f} mm median, {errors[-1]:.1f} mm worst)"
+    timing = result.timing
+    alarms = f"{result.false_alarms} false alarm{'' if result.false_alarms == 1 else 's'}"
+    return (
+        f"{text}; {alarms}.\nMonitor call from Python: {1e6 * timing.mean:.1f} us mean, "
+        f"{1e6 * timing.median:.1f} us median, {1e6 * timing.max:.0f} us max over {timing.calls} ticks."
+    )

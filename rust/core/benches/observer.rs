@@ -1,0 +1,57 @@
+//! One step of the momentum observer, and one tick of the monitor without a contact.
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use std::hint::black_box;
+
+use contactsense::isolation::IsolatorOptions;
+use contactsense::monitor::{ContactMonitor, MonitorOptions};
+use contactsense::observer::MomentumObserver;
+use criterion::{criterion_group, criterion_main, Criterion};
+
+fn step(c: &mut Criterion) {
+    let mut group = c.benchmark_group("momentum observer");
+    for (name, robot) in [("arm, 7 joints", common::arm()), ("humanoid, nv 30", common::humanoid())] {
+        let q = common::configuration(&robot, 0.4);
+        let v = common::numbers(robot.nv(), 0.7);
+        let tau = common::numbers(robot.nv(), 1.1);
+        let mut observer = MomentumObserver::new(robot, 1e-3, &[50.0]).expect("valid settings");
+        group.bench_function(name, |b| {
+            b.iter(|| black_box(observer.update(&q, &v, &tau, None, None).expect("valid input"))[0])
+        });
+        group.bench_function(format!("{name}, with acceleration"), |b| {
+            b.iter(|| {
+                observer.update(&q, &v, &tau, None, None).expect("valid input");
+                black_box(observer.acceleration())[0]
+            })
+        });
+    }
+    group.finish();
+}
+
+fn tick(c: &mut Criterion) {
+    let mut group = c.benchmark_group("monitor, no contact");
+    for (name, robot) in [("arm, 7 joints", common::arm()), ("humanoid, nv 30", common::humanoid())] {
+        let q = common::configuration(&robot, 0.4);
+        let rest = vec![0.0; robot.nv()];
+        let tau = robot.inverse_dynamics(&q, &rest, &rest).expect("valid input");
+        let options = MonitorOptions {
+            dt: 1e-3,
+            observer_gain: vec![50.0],
+            isolation: IsolatorOptions::default(),
+            hold_time: 0.02,
+            bias_time_constant: None,
+            bias_settle_time: None,
+        };
+        let mut monitor = ContactMonitor::new(robot, &options).expect("valid settings");
+        group.bench_function(name, |b| {
+            b.iter(|| monitor.update(black_box(&q), &rest, &tau, None).expect("valid input"))
+        });
+        assert!(!monitor.report().collision);
+    }
+    group.finish();
+}
+
+criterion_group!(benches, step, tick);
+criterion_main!(benches);

@@ -1,0 +1,61 @@
+"""The comparison with peers runs, its contestants agree, and its JSON says what it should."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import contactsense as cs
+
+ROOT = Path(__file__).resolve().parents[1]
+PEERS = ("trimesh", "embreex", "igl", "fcpw")
+LEAST = {"observer": 2, "monitor": 6, "closest": 2, "rays": 2}
+
+
+def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "benches.compare", *arguments]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=300, check=False)
+
+
+@pytest.fixture(scope="module")
+def report() -> dict:
+    absent = [name for name in PEERS if importlib.util.find_spec(name) is None]
+    if absent:
+        pytest.skip(f"{', '.join(absent)} not installed (extra `bench`)")
+    if cs.build_profile != "release":
+        pytest.skip("a debug build is not timed")
+    done = run("--quick", "--json")
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+@pytest.mark.parametrize("name", sorted(LEAST))
+def test_every_comparison_times_ours_beside_peers(report: dict, name: str) -> None:
+    starts = {"observer": "observer", "monitor": "monitor", "closest": "closest point", "rays": "all hits"}
+    found = [c for c in report["comparisons"] if c["task"].startswith(starts[name])]
+    assert len(found) >= LEAST[name]
+    for comparison in found:
+        ours, *peers = comparison["timings"]
+        assert ours["name"].startswith("contactsense")
+        assert ours["ratio"] == 1.0
+        assert isinstance(comparison["passed"], bool)
+        for timing in (ours, *peers):
+            low, high = timing["spread_us"]
+            assert 0.0 < low <= timing["median_us"] <= high
+            assert np.isclose(timing["ratio"], timing["median_us"] / ours["median_us"])
+
+
+def test_report_names_the_machine_and_versions(report: dict) -> None:
+    assert {"cpu", "cores", "python", "numpy", "pin", "contactsense"} <= set(report["about"])
+
+
+def test_unknown_comparison_is_refused() -> None:
+    done = run("nothing")
+    assert done.returncode == 2
+    assert "observer, monitor, closest, rays" in done.stderr

@@ -1,0 +1,181 @@
+"""The demo: its figures within bounds, honest at noise, and the command's outputs."""
+
+from __future__ import annotations
+
+import json
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from contactsense import InputError, demo
+from contactsense.cli.app import run as run_command
+from contactsense.demo.plan import FORCE_RANGE, LINKS, ROUNDS
+from contactsense.demo.settings import choose, noise_passed
+
+NOISE = (2.0, 0.1)
+
+
+@lru_cache
+def result(seed: int, noise: tuple[float, float] = (0.0, 0.0)) -> demo.DemoResult:
+    return demo.run(seed=seed, noise=noise)
+
+
+@pytest.mark.parametrize("seed", [1, 4])
+def test_without_noise(seed: int) -> None:
+    # Over 20 seeds: delay up to 3.2 ms, median point error 0.6 mm, worst force error 10 %.
+    run = result(seed)
+    assert len(run.hits) == len(LINKS) * ROUNDS
+    assert run.detected == len(run.hits)
+    assert run.false_alarms == 0
+    assert run.links_right >= len(run.hits) - 2
+    assert len(run.located) >= 4
+    assert max(hit.delay for hit in run.hits) < 0.006
+    assert np.median([hit.point_error for hit in run.located]) < 0.003
+    assert max(hit.force_error for hit in run.located) < 0.15
+
+
+@pytest.mark.parametrize("seed", [1, 4])
+def test_with_noise(seed: int) -> None:
+    # Over 20 seeds: delay up to 19 ms, median point error 1.9 mm, errors up to 2.9 of the stated deviations.
+    run = result(seed, NOISE)
+    assert run.detected == len(run.hits)
+    assert run.false_alarms == 0
+    assert run.links_right >= 5
+    assert len(run.located) >= 2
+    assert max(hit.delay for hit in run.hits) < 0.030
+    assert np.median([hit.point_error for hit in run.located]) < 0.010
+    assert all(hit.point_error < 5 * hit.point_std for hit in run.located)
+    assert max(hit.force_error for hit in run.located) < 0.40
+
+
+@pytest.mark.parametrize("noise", [(0.0, 0.0), NOISE])
+def test_what_is_open_has_no_figures(noise: tuple[float, float]) -> None:
+    run = result(1, noise)
+    few_joints = [hit for hit in run.hits if hit.link == "iiwa_link_4"]
+    assert len(few_joints) == ROUNDS
+    assert not any(hit.located for hit in few_joints)
+    for hit in run.hits:
+        given = (hit.point, hit.point_error, hit.point_std, hit.force_error, hit.estimated_force)
+        assert all((value is not None) == hit.located for value in given)
+
+
+def test_the_truth_is_the_hit_on_the_surface() -> None:
+    run = result(1)
+    for hit in run.hits:
+        pose = run.robot.link_pose(hit.q, hit.link)
+        local = (hit.true_point - pose[:3, 3]) @ pose[:3, :3]
+        closest = run.robot.surface(hit.link).closest_points(local[None])
+        assert closest.distances[0] == pytest.approx(0.0, abs=1e-9)
+        inward = -(pose[:3, :3] @ closest.normals[0])
+        assert hit.true_force @ inward / hit.force > np.cos(np.pi / 6) - 1e-6
+        assert FORCE_RANGE[0] <= hit.force <= FORCE_RANGE[1]
+        during = (run.signals.time > hit.start) & (run.signals.time < hit.start + hit.duration)
+        assert run.signals.true_force[during].max() == pytest.approx(hit.force, rel=0.01)
+
+
+def test_same_seed_same_result() -> None:
+    def data(run: demo.DemoResult) -> dict[str, object]:
+        return {**demo.as_data(run), "monitor": None}
+
+    assert data(demo.run(seed=1, noise=NOISE)) == data(result(1, NOISE))
+    assert data(result(1, NOISE)) != data(result(4, NOISE))
+
+
+def test_progress() -> None:
+    seen: list[demo.Progress] = []
+    run = demo.run(seed=1, on_progress=seen.append)
+    assert [len(progress.hits) for progress in seen] == sorted(len(progress.hits) for progress in seen)
+    times = [progress.time for progress in seen]
+    assert times == sorted(times)
+    assert seen[0].time == 0.0
+    assert seen[-1].time > 0.98 * seen[-1].end
+    assert seen[-1].planned == len(seen[-1].hits) == len(run.hits)
+
+
+def test_thresholds_follow_the_noise() -> None:
+    torque = np.array([0.0, 100.0])
+    exact = choose(demo.Noise(), torque, 1e-3)
+    noisy = choose(demo.Noise(1.0, 0.5), torque, 1e-3)
+    assert (exact.torque_threshold == 0.05).all()
+    assert noisy.observer_gain < exact.observer_gain
+    expected = 6.0 * noise_passed(noisy.observer_gain, 1e-3) * np.hypot([0.0, 1.0], 0.5)
+    np.testing.assert_allclose(noisy.torque_threshold, expected)
+
+
+def test_noise_passed_is_the_observers() -> None:
+    noise = np.random.default_rng(0).standard_normal(400_000)
+    decay, observed, values = np.exp(-250.0 * 1e-3), 0.0, []
+    for mean in 0.5 * (noise[1:] + noise[:-1]):
+        observed = mean + decay * (observed - mean)
+        values.append(observed)
+    assert noise_passed(250.0, 1e-3) == pytest.approx(np.std(values), rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        ({"robot": "atlas"}, r"robot: .*'atlas'; there is iiwa14"),
+        ({"seed": -1}, "seed"),
+        ({"noise": (-1.0, 0.0)}, "noise: percent"),
+        ({"noise": (0.0, np.nan)}, "noise: newton_metres"),
+        ({"gain": 0.0}, "gain"),
+    ],
+)
+def test_wrong_arguments(arguments: dict[str, object], named: str) -> None:
+    with pytest.raises(InputError, match=named):
+        demo.run(**arguments)
+
+
+def test_json_and_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    picture = tmp_path / "demo.png"
+    assert run_command(["demo", "--seed", "1", "--noise", "2", "0.1", "--out", str(picture), "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert data["picture"] == str(picture)
+    assert data["noise"] == {"percent": 2.0, "newton_metres": 0.1}
+    assert len(data["torque_threshold"]) == 7
+    assert len(data["hits"]) == data["summary"]["hits"] == 9
+    for hit in data["hits"]:
+        assert (hit["point_error_mm"] is None) == (not hit["located"])
+        assert hit["link_right"] == (hit["named"] == hit["link"])
+    assert data["summary"]["located"] == sum(hit["located"] for hit in data["hits"])
+    assert data["monitor"]["calls"] == 8000
+    assert 0 < data["monitor"]["mean_us"] <= data["monitor"]["max_us"]
+
+
+def test_table_without_a_terminal(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    picture = tmp_path / "demo.png"
+    assert run_command(["demo", "--seed", "1", "--out", str(picture)]) == 0
+    told = capsys.readouterr().out
+    assert told.count("delay") == 1
+    assert "\x1b" not in told
+    assert "9 of 9 hits felt" in told
+    assert "Picture:" in told
+    assert picture.exists()
+
+
+@pytest.mark.parametrize("arguments", [["--robot", "atlas"], ["--noise", "x", "1"], ["--gain", "-1"]])
+def test_wrong_command_line(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_command(["demo", *arguments]) == 2
+    assert "Traceback" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["absent/demo.png", "demo.nosuch"])
+def test_picture_that_cannot_be_written(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run_command(["demo", "--seed", "1", "--out", str(tmp_path / name)]) == 2
+    assert capsys.readouterr().err.startswith("contactsense: out: cannot write")
+
+
+@pytest.mark.parametrize("package", ["mujoco", "matplotlib"])
+def test_a_missing_package_is_named(
+    package: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(demo, "find_spec", lambda name: None if name == package else object())
+    assert run_command(["demo"]) == 2
+    told = capsys.readouterr().err
+    assert package in told
+    assert "contactsense[demo]" in told
