@@ -54,6 +54,7 @@ pub struct ContactIsolator {
     tips: TipSearch,
     bodies: BodySet,
     line: LineCast,
+    displaced: Vec<Candidate>,
     unexplained: Vec<f64>,
     isolation: Isolation,
 }
@@ -82,6 +83,7 @@ impl ContactIsolator {
             tips: TipSearch::new(&robot),
             bodies: BodySet::new(&robot),
             line: LineCast::new(),
+            displaced: Vec::with_capacity(CANDIDATES),
             unexplained: vec![0.0; robot.nv()],
             isolation,
             robot,
@@ -246,8 +248,8 @@ impl ContactIsolator {
         }
         let allowed = (UNEXPLAINED_SHARE * squares.sqrt())
             .max(UNEXPLAINED_THRESHOLDS * (self.threshold.len() as f64).sqrt());
-        let grazing = hit.normal.dot(&force).abs() / force.norm();
-        let point_std = wrench.point_std(&at) / grazing.max(f64::EPSILON);
+        let point_std = self.spread(kinematics, wrench, hit);
+        let (robot, link) = (&self.robot, &self.robot.links[hit.link]);
         let size = link.surface.as_ref().map_or(0.0, |surface| surface.bounding_sphere().1);
 
         let pose = kinematics.link_pose(robot, hit.link);
@@ -261,6 +263,28 @@ impl ContactIsolator {
         contact.candidates = 0..self.isolation.candidates.len();
         contact.located = self.pushing && SIGNIFICANCE * point_std < size && misfit.sqrt() <= allowed;
         self.isolation.contacts.push(contact);
+    }
+
+    /// Standard deviation of the point [m]: of the line across the surface, or as far as lines displaced by twice
+    /// theirs hit elsewhere, past an edge or on another link.
+    fn spread(&mut self, kinematics: &Kinematics, wrench: &WrenchEstimate, hit: &Candidate) -> f64 {
+        let at = hit.point - kinematics.origin;
+        let direction = wrench.force / wrench.force.norm();
+        let displacements = wrench.displacements(&at);
+        let grazing = hit.normal.dot(&direction).abs().max(f64::EPSILON);
+        let mut spread = displacements[0].norm().hypot(displacements[1].norm()) / grazing;
+        for displacement in displacements.iter().flat_map(|step| [step * 2.0, step * -2.0]) {
+            self.displaced.clear();
+            let start = at + displacement;
+            for &link in &self.isolation.link_candidates {
+                self.line.cast(&self.robot, kinematics, link, &start, &direction, &mut self.displaced);
+            }
+            let entering = self.displaced.iter().filter(|other| other.pushing);
+            if let Some(other) = entering.min_by(|a, b| a.distance.total_cmp(&b.distance)) {
+                spread = spread.max(0.5 * (other.point - hit.point).norm());
+            }
+        }
+        spread
     }
 
     /// The line of action meets no surface where the force could enter: the wrench is known, the point is not.

@@ -143,14 +143,18 @@ impl WrenchEstimate {
         self.root.fixed_rows::<3>(0).norm() / self.force.norm() * self.torque_deviation()
     }
 
-    /// Standard deviation of a point of the line across the line [m].
-    pub fn point_std(&self, point: &Vector3<f64>) -> f64 {
+    /// Two displacements of the line at a point of it, across the line and each other, by one standard deviation [m].
+    pub fn displacements(&self, point: &Vector3<f64>) -> [Vector3<f64>; 2] {
         let lever = (point - self.reference).cross_matrix();
         let across = self.force.cross_matrix() / self.force.norm_squared();
         let mut map = Matrix3x6::zeros();
         map.fixed_view_mut::<3, 3>(0, 0).copy_from(&(-(across * lever)));
         map.fixed_view_mut::<3, 3>(0, 3).copy_from(&across);
-        (map * self.root).norm() * self.torque_deviation()
+        let root = map * self.root * self.torque_deviation();
+        let along = self.force / self.force.norm();
+        let apart = if along.x.abs() < 0.8 { Vector3::x() } else { Vector3::y() };
+        let first = along.cross(&apart).normalize();
+        [first, along.cross(&first)].map(|direction| direction * root.tr_mul(&direction).norm())
     }
 
     /// Standard deviation of a torque in thresholds: as the redundant torques and the absence of a moment along the
