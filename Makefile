@@ -6,6 +6,7 @@ BIN := $(VENV)/bin
 
 .PHONY: demo test lint types rust-test python-test bench clean toolchain install
 
+demo: EXTRAS := demo
 demo: install
 	$(BIN)/contactsense demo
 
@@ -28,8 +29,8 @@ rust-test: toolchain
 python-test: install
 	$(BIN)/python -m pytest -q
 
+bench: EXTRAS := bench
 bench: install
-	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet --extras bench
 	cargo bench --workspace
 	$(BIN)/python -m benches.compare
 
@@ -43,9 +44,10 @@ $(BIN)/maturin: | toolchain
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install -q --disable-pip-version-check 'maturin>=1.9.4,<2'
 
-# Installs the packages that the tests need, builds the release code, and links it into the environment.
+# Installs what is needed, builds the release code, and links it into the environment.
+EXTRAS := test
 install: $(BIN)/maturin
-	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet --extras test
+	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet --extras $(EXTRAS)
 
 clean:
 	rm -rf $(VENV) target
