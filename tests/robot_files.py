@@ -1,21 +1,13 @@
 """Published robots to load: the example-robot-data package and, where present, `../shared/robots`."""
 
-from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
 import pytest
+from robots import EXAMPLE_SHARE
+from robots import SHARED as BESIDE
 
-SHARED = Path(__file__).resolve().parents[2] / "shared" / "robots"
-
-
-def _share() -> Path | None:
-    try:
-        return Path(str(distribution("example-robot-data").locate_file("cmeel.prefix/share"))).resolve()
-    except PackageNotFoundError:
-        return None
-
-
-SHARE = _share()
+SHARED = BESIDE / "robots"
+SHARE = EXAMPLE_SHARE if (EXAMPLE_SHARE / "example-robot-data").is_dir() else None
 _ROBOTS = SHARE / "example-robot-data" / "robots" if SHARE else None
 
 # Descriptions without a link: what xacro leaves of a macro file.
