@@ -2,15 +2,14 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Matrix3, Vector3};
-
 use super::body_set::BodySet;
+use super::force::{explain_force, identify_force};
 use super::line::{best_first, LineCast};
 use super::result::{Candidate, Contact, Isolation};
 use super::wrench::{estimate_wrench, jacobian_column, WrenchEstimate};
 use crate::detection::TipSearch;
 use crate::error::{Error, Result};
-use crate::robot::motion::{split, stack};
+use crate::robot::motion::stack;
 use crate::robot::{Kinematics, Robot};
 
 /// Rounds until the contact link stands still; ten, as in Vorndamme 2017.
@@ -213,7 +212,7 @@ impl ContactIsolator {
         Some(best)
     }
 
-    /// The contact is at `hit`: identify the force there (Vorndamme 2017, eq. 30, without moment).
+    /// The contact is at `hit`: identify the force there and judge how far both can be trusted.
     fn report_point(
         &mut self,
         kinematics: &Kinematics,
@@ -222,26 +221,13 @@ impl ContactIsolator {
         tau_ext: &[f64],
     ) {
         let robot = &self.robot;
-        let link = &robot.links[hit.link];
+        let body = robot.links[hit.link].body;
         let at = hit.point - kinematics.origin;
-        let (mut normal_matrix, mut rhs) = (Matrix3::zeros(), Vector3::zeros());
-        for &joint in robot.chain(link.body) {
-            for (column, k) in robot.velocity_range(joint).enumerate() {
-                let (row, _) = split(&jacobian_column(robot, kinematics, joint, column, &at));
-                let weight = 1.0 / (self.threshold[k] * self.threshold[k]);
-                normal_matrix += row * row.transpose() * weight;
-                rhs += row * (tau_ext[k] * weight);
-            }
-        }
         // A full-rank wrench leaves the force regular; keep the wrench's force should rounding say otherwise.
-        let force = normal_matrix.cholesky().map_or(wrench.force, |factor| factor.solve(&rhs));
+        let force =
+            identify_force(robot, kinematics, body, &at, tau_ext, &self.threshold).unwrap_or(wrench.force);
+        explain_force(robot, kinematics, body, &at, &force, &mut self.unexplained);
         let (mut squares, mut misfit) = (0.0, 0.0);
-        for &joint in robot.chain(link.body) {
-            for (column, k) in robot.velocity_range(joint).enumerate() {
-                let (row, _) = split(&jacobian_column(robot, kinematics, joint, column, &at));
-                self.unexplained[k] -= row.dot(&force);
-            }
-        }
         for (k, threshold) in self.threshold.iter().enumerate() {
             squares += (tau_ext[k] / threshold).powi(2);
             misfit += (self.unexplained[k] / threshold).powi(2);

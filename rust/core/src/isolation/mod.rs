@@ -1,6 +1,7 @@
 //! Isolation and identification: where a contact is and how hard (Vorndamme 2017, section IV).
 
 mod body_set;
+mod force;
 mod isolator;
 mod line;
 mod result;
