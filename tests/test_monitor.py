@@ -184,6 +184,9 @@ def test_bad_input_is_named_and_changes_nothing(arm: cs.Robot, position: int, ba
         ({"dt": DT, "hold_time": -0.1}, "hold_time"),
         ({"dt": DT, "hold_time": np.nan}, "hold_time"),
         ({"dt": DT, "max_contacts": 0}, "max_contacts"),
+        ({"dt": 10**400}, "dt"),
+        ({"dt": "fast"}, "dt"),
+        ({"dt": DT, "hold_time": "long"}, "hold_time"),
     ],
 )
 def test_bad_settings_are_named(arm: cs.Robot, options: dict[str, object], name: str) -> None:

@@ -159,3 +159,10 @@ def test_array_likes_are_welcome(arm: cs.Robot) -> None:
     observer = cs.MomentumObserver(arm, dt=1e-3)
     observer.update(q, v, strided)
     assert observer.update(np.float32(q), np.zeros(7, dtype=int), strided).shape == (7,)
+
+
+def test_fields_of_packed_records_are_read(arm: cs.Robot) -> None:
+    record = np.zeros(3, np.dtype([("flag", "i1"), ("q", "f8", (7,))]))
+    record["q"][1] = np.arange(7.0)
+    expected = arm.mass_matrix(np.arange(7.0))
+    np.testing.assert_array_equal(arm.mass_matrix(record[1]["q"]), expected)

@@ -301,6 +301,19 @@ def test_any_finite_ray_has_an_answer(origin: list[float], direction: list[float
     assert np.isfinite(surface.closest_points(origin).points).all()
 
 
+@pytest.mark.parametrize("thickness", [1e-3, 1e-5])
+def test_closest_points_of_slivers(tmp_path: Path, thickness: float) -> None:
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, thickness)], dtype=float)
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    faces = np.array([f for a, b, c, d in quads for f in ((a, b, c), (a, c, d))])
+    surface, _ = mesh_surface(tmp_path, corners, faces)
+    v = surface.vertices  # OBJ numbers are read in single precision
+    rng = np.random.default_rng(6)
+    weights = rng.dirichlet(np.ones(3), size=(len(surface.triangles), 50))
+    on_surface = np.einsum("tkc,tcx->tkx", weights, v[surface.triangles]).reshape(-1, 3)
+    assert surface.closest_points(on_surface).distances.max() < 1e-9 * thickness / 1e-5
+
+
 def test_deeply_nested_collada_is_refused(tmp_path: Path) -> None:
     (tmp_path / "deep.dae").write_text("<COLLADA>" * 100_000 + "</COLLADA>" * 100_000)
     with pytest.raises(cs.GeometryError, match="nested"):

@@ -294,3 +294,9 @@ def test_any_number_in_any_place_raises_nothing_but_our_errors(span, number, tmp
 @given(start=st.integers(0, len(ARM)), length=st.integers(1, 200))
 def test_cut_text_raises_nothing_but_our_errors(start, length, tmp_path):
     load_or_refuse(write(tmp_path, ARM[:start] + ARM[start + length :]))
+
+
+def test_zero_mass_is_warned_of(tmp_path):
+    text = robot(link("a"), link("b", inertial("0")), joint("j", "a", "b"))
+    warnings = describe_urdf(write(tmp_path, text)).warnings
+    assert "These links move with a joint but have zero mass (used as given): 'b'" in warnings

@@ -207,7 +207,7 @@ class ContactMonitor:
         torque_threshold: ArrayLike | None = None,
         bias_time_constant: float | None = None,
         bias_settle_time: float | None = None,
-        hold_time: float = 0.02,
+        hold_time: float | None = None,
         max_contacts: int | None = None,
         pushing: bool = True,
     ) -> Self: ...

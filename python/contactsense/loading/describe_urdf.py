@@ -81,7 +81,7 @@ def _inertias(tree: UrdfTree) -> Iterator[tuple[str, float, FloatArray]]:
 def _gravity(gravity: ArrayLike) -> FloatArray:
     try:
         vector = np.array(gravity, dtype=np.float64)
-    except (TypeError, ValueError) as cause:
+    except (TypeError, ValueError, OverflowError) as cause:
         raise InputError(f"gravity must be 3 finite numbers [m/s^2], not {gravity!r}") from cause
     if vector.shape != (3,) or not np.isfinite(vector).all():
         raise InputError(f"gravity must be 3 finite numbers [m/s^2], not {gravity!r}")

@@ -83,7 +83,7 @@ def check_mass_matrix(model: Any) -> list[str]:
         return []
     return [
         "No mass or inertia moves with these joints, so the mass matrix is singular "
-        f"and forward dynamics is not available: {name_list(names)}"
+        f"and the acceleration of forward dynamics is not to be relied on: {name_list(names)}"
     ]
 
 

@@ -26,6 +26,7 @@ def oddities(tree: UrdfTree) -> list[str]:
             and joint.limit["lower"] >= joint.limit["upper"]
         ],
         "These links move with a joint but have no <inertial> (taken as massless)": _without_inertial(tree),
+        "These links move with a joint but have zero mass (used as given)": _massless(tree),
     }
     return warnings + [f"{concern}: {name_list(names)}" for concern, names in concerns.items() if names]
 
@@ -33,3 +34,8 @@ def oddities(tree: UrdfTree) -> list[str]:
 def _without_inertial(tree: UrdfTree) -> list[str]:
     # Frames behind fixed joints rarely have one and need none.
     return [joint.child for joint in tree.moving if tree.links[joint.child].inertial is None]
+
+
+def _massless(tree: UrdfTree) -> list[str]:
+    links = [tree.links[joint.child] for joint in tree.moving]
+    return [link.name for link in links if link.inertial is not None and link.inertial.mass == 0.0]

@@ -14,8 +14,10 @@ pub struct Vector<'py>(PyReadonlyArray1<'py, f64>);
 impl<'py> Vector<'py> {
     pub fn new(name: &str, object: &Bound<'py, PyAny>) -> PyResult<Self> {
         if let Ok(array) = object.cast::<PyArray1<f64>>() {
-            if array.is_c_contiguous() {
-                return Ok(Self(array.readonly()));
+            let view = array.readonly();
+            // Neither strided nor unaligned, as a field of a packed record is.
+            if view.as_slice().is_ok() {
+                return Ok(Self(view));
             }
         }
         let converted = convert(name, object)?;
@@ -40,6 +42,18 @@ impl<'py> Vector<'py> {
         let slice = self.slice();
         <[f64; N]>::try_from(slice)
             .map_err(|_| input(py, format!("{name}: expected {N} numbers, got {}", slice.len())))
+    }
+}
+
+/// A real number; NaN, which the core refuses by name, for anything else.
+#[derive(Clone, Copy)]
+pub struct Number(pub f64);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for Number {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        Ok(Number(object.extract::<f64>().unwrap_or(f64::NAN)))
     }
 }
 
@@ -91,10 +105,7 @@ fn convert<'py>(name: &str, object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, P
     if !matches!(kind.as_str(), "f" | "i" | "u" | "b") {
         return Err(input(py, format!("{name}: expected an array of real numbers")));
     }
-    let kwargs = pyo3::types::PyDict::new(py);
-    kwargs.set_item("dtype", "float64")?;
-    kwargs.set_item("order", "C")?;
-    numpy.call_method("asarray", (array,), Some(&kwargs)).map_err(refused)
+    numpy.call_method1("require", (array, "float64", ["C", "A"])).map_err(refused)
 }
 
 /// A fresh `(rows, columns)` array.

@@ -9,7 +9,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arrays::Vector;
+use crate::arrays::{Number, Vector};
 use crate::errors::to_python;
 use crate::isolator::{contact_count, contacts, names};
 use crate::observer::scalar_or_vector;
@@ -80,8 +80,8 @@ impl PyContactReport {
 ///
 /// `dt`: time between two calls [s]. `observer_gain`: scalar or `(nv,)` [1/s], default 50. `torque_threshold`: scalar
 /// or `(nv,)` [Nm, N], default 0.5. `bias_time_constant` [s]: tracks the torque that a model's errors feign while
-/// nothing touches; the first time constant is taken as free of contact. `hold_time` [s]: a signal stays on so long
-/// after it was last over its threshold. `max_contacts`, `pushing`: as in `ContactIsolator`. Raises `InputError` that
+/// nothing touches; the first time constant is taken as free of contact. `hold_time` [s], default 0.02: a signal stays on so
+/// long after it was last over its threshold. `max_contacts`, `pushing`: as in `ContactIsolator`. Raises `InputError` that
 /// names the argument.
 #[pyclass(name = "ContactMonitor", module = "contactsense._core")]
 pub struct PyContactMonitor(ContactMonitor);
@@ -90,16 +90,16 @@ pub struct PyContactMonitor(ContactMonitor);
 impl PyContactMonitor {
     #[new]
     #[pyo3(signature = (robot, *, dt, observer_gain=None, torque_threshold=None, bias_time_constant=None,
-                        bias_settle_time=None, hold_time=0.02, max_contacts=None, pushing=true))]
+                        bias_settle_time=None, hold_time=None, max_contacts=None, pushing=true))]
     #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
         robot: &Bound<'_, PyRobot>,
-        dt: f64,
+        dt: Number,
         observer_gain: Option<&Bound<'_, PyAny>>,
         torque_threshold: Option<&Bound<'_, PyAny>>,
-        bias_time_constant: Option<f64>,
-        bias_settle_time: Option<f64>,
-        hold_time: f64,
+        bias_time_constant: Option<Number>,
+        bias_settle_time: Option<Number>,
+        hold_time: Option<Number>,
         max_contacts: Option<&Bound<'_, PyAny>>,
         pushing: bool,
     ) -> PyResult<Self> {
@@ -107,16 +107,16 @@ impl PyContactMonitor {
             object.map_or(Ok(vec![default]), |object| scalar_or_vector(name, object))
         };
         let options = MonitorOptions {
-            dt,
+            dt: dt.0,
             observer_gain: or_default("observer_gain", observer_gain, 50.0)?,
             isolation: IsolatorOptions {
                 torque_threshold: or_default("torque_threshold", torque_threshold, 0.5)?,
                 max_contacts: contact_count(max_contacts)?,
                 pushing,
             },
-            hold_time,
-            bias_time_constant,
-            bias_settle_time,
+            hold_time: hold_time.map_or(0.02, |number| number.0),
+            bias_time_constant: bias_time_constant.map(|number| number.0),
+            bias_settle_time: bias_settle_time.map(|number| number.0),
         };
         let monitor = ContactMonitor::new(robot.get().0.clone(), &options);
         Ok(Self(monitor.map_err(|error| to_python(robot.py(), error))?))

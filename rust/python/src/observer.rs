@@ -4,7 +4,7 @@ use contactsense::observer::MomentumObserver;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::arrays::Vector;
+use crate::arrays::{Number, Vector};
 use crate::errors::to_python;
 use crate::robot::PyRobot;
 
@@ -30,10 +30,10 @@ pub struct PyMomentumObserver(MomentumObserver);
 impl PyMomentumObserver {
     #[new]
     #[pyo3(signature = (robot, *, dt, gain=None))]
-    fn new(robot: &Bound<'_, PyRobot>, dt: f64, gain: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+    fn new(robot: &Bound<'_, PyRobot>, dt: Number, gain: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         let py = robot.py();
         let gain = gain.map_or(Ok(vec![50.0]), |gain| scalar_or_vector("gain", gain))?;
-        let observer = MomentumObserver::new(robot.get().0.clone(), dt, &gain);
+        let observer = MomentumObserver::new(robot.get().0.clone(), dt.0, &gain);
         Ok(Self(observer.map_err(|error| to_python(py, error))?))
     }
 
@@ -48,14 +48,14 @@ impl PyMomentumObserver {
         q: &Bound<'py, PyAny>,
         v: &Bound<'py, PyAny>,
         tau: &Bound<'py, PyAny>,
-        dt: Option<f64>,
+        dt: Option<Number>,
         friction: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let py = q.py();
         let (q, v, tau) = (Vector::new("q", q)?, Vector::new("v", v)?, Vector::new("tau", tau)?);
         let friction = Vector::optional("friction", friction)?;
         let friction = friction.as_ref().map(|friction| friction.slice());
-        match self.0.update(q.slice(), v.slice(), tau.slice(), friction, dt) {
+        match self.0.update(q.slice(), v.slice(), tau.slice(), friction, dt.map(|dt| dt.0)) {
             Ok(torque) => Ok(PyArray1::from_slice(py, torque)),
             Err(error) => Err(to_python(py, error)),
         }

@@ -16,9 +16,9 @@ use crate::robot::{Kinematics, Robot};
 const ROUNDS: usize = 10;
 /// All hits of one instant that are kept.
 const CANDIDATES: usize = 512;
-/// A single force must explain the torque but for this share, or for a few thresholds.
-const UNEXPLAINED_SHARE: f64 = 0.05;
-const UNEXPLAINED_THRESHOLDS: f64 = 3.0;
+/// A located contact explains the torques but for this (root mean square, in thresholds): more is no noise, but a
+/// moment, a second contact or a wrong model.
+const CONTRADICTION: f64 = 1.0;
 /// A misfit that chance brings about once in a thousand times [thresholds].
 const EXACT_FIT: f64 = 1e-3;
 /// A contact is located if its force exceeds so many standard deviations of it, and its link's bounding radius so
@@ -227,13 +227,13 @@ impl ContactIsolator {
         let force =
             identify_force(robot, kinematics, body, &at, tau_ext, &self.threshold).unwrap_or(wrench.force);
         explain_force(robot, kinematics, body, &at, &force, &mut self.unexplained);
-        let (mut squares, mut misfit) = (0.0, 0.0);
-        for (k, threshold) in self.threshold.iter().enumerate() {
-            squares += (tau_ext[k] / threshold).powi(2);
-            misfit += (self.unexplained[k] / threshold).powi(2);
-        }
-        let allowed = (UNEXPLAINED_SHARE * squares.sqrt())
-            .max(UNEXPLAINED_THRESHOLDS * (self.threshold.len() as f64).sqrt());
+        let squares = self
+            .unexplained
+            .iter()
+            .zip(&self.threshold)
+            .map(|(torque, threshold)| (torque / threshold).powi(2));
+        let unexplained = (squares.sum::<f64>() / self.threshold.len() as f64).sqrt();
+        let consistent = wrench.misfit() <= CONTRADICTION && unexplained <= CONTRADICTION;
         let point_std = self.spread(kinematics, wrench, hit);
         let (robot, link) = (&self.robot, &self.robot.links[hit.link]);
         let size = link.surface.as_ref().map_or(0.0, |surface| surface.bounding_sphere().1);
@@ -247,7 +247,7 @@ impl ContactIsolator {
         contact.wrench = stack(&force, &(hit.point - pose.translation).cross(&force));
         contact.point_std = point_std;
         contact.candidates = 0..self.isolation.candidates.len();
-        contact.located = self.pushing && SIGNIFICANCE * point_std < size && misfit.sqrt() <= allowed;
+        contact.located = self.pushing && SIGNIFICANCE * point_std < size && consistent;
         self.isolation.contacts.push(contact);
     }
 

@@ -11,8 +11,10 @@ const LEVER: f64 = 0.3;
 const RANK_TOLERANCE: f64 = 1e-7;
 /// An SVD of a finite 6 x 6 matrix converges within a few sweeps; this bounds the time.
 const SVD_ITERATIONS: usize = 200;
-/// Thresholds are set well above the noise: a torque's standard deviation is a third at most.
+/// Thresholds are set well above the noise: a torque's standard deviation is a third of its threshold, and less only
+/// where redundant torques agree better. Chance makes them agree: never less than a hundredth of that.
 const DEVIATION_AT_MOST: f64 = 1.0 / 3.0;
+const DEVIATION_AT_LEAST: f64 = DEVIATION_AT_MOST / 100.0;
 /// By how much a standard deviation estimated from 1, 2, ... redundant torques can be too small (in 99 of 100 cases,
 /// from the chi distribution).
 const CAUTION: [f64; 5] = [80.0, 10.0, 5.1, 3.7, 3.0];
@@ -158,11 +160,12 @@ impl WrenchEstimate {
     }
 
     /// Standard deviation of a torque in thresholds: as the redundant torques and the absence of a moment along the
-    /// force show it, with caution where they are few; a third at most.
+    /// force show it, with caution where they are few; more than a third only where they contradict that.
     fn torque_deviation(&self) -> f64 {
         let checks = self.redundant + 1;
         let caution = CAUTION[checks.min(CAUTION.len()) - 1];
-        (self.misfit() * caution).min(DEVIATION_AT_MOST)
+        let estimate = self.misfit();
+        (estimate * caution).clamp(DEVIATION_AT_LEAST, DEVIATION_AT_MOST).max(estimate)
     }
 
     /// Root mean square of what contradicts a single force without moment, in thresholds.

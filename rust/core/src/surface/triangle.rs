@@ -3,6 +3,8 @@
 use nalgebra::Vector3;
 
 /// Nearest point of the triangle (Ericson, Real-Time Collision Detection, 5.1.5: Voronoi regions).
+///
+/// The areas against the edges are triple products: differences of products of lengths lose slivers' digits.
 #[inline]
 pub(super) fn closest(p: &Vector3<f64>, [a, b, c]: &[Vector3<f64>; 3]) -> Vector3<f64> {
     let ab = b - a;
@@ -19,7 +21,8 @@ pub(super) fn closest(p: &Vector3<f64>, [a, b, c]: &[Vector3<f64>; 3]) -> Vector
     if d3 >= 0.0 && d4 <= d3 {
         return *b;
     }
-    let vc = d1 * d4 - d3 * d2;
+    let normal = ab.cross(&ac);
+    let vc = normal.dot(&ab.cross(&ap));
     if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
         return a + ab * (d1 / (d1 - d3));
     }
@@ -29,11 +32,11 @@ pub(super) fn closest(p: &Vector3<f64>, [a, b, c]: &[Vector3<f64>; 3]) -> Vector
     if d6 >= 0.0 && d5 <= d6 {
         return *c;
     }
-    let vb = d5 * d2 - d1 * d6;
+    let vb = normal.dot(&ap.cross(&ac));
     if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
         return a + ac * (d2 / (d2 - d6));
     }
-    let va = d3 * d6 - d5 * d4;
+    let va = normal.dot(&(c - b).cross(&bp));
     if va <= 0.0 && d4 >= d3 && d5 >= d6 {
         let w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
         return b + (c - b) * w;

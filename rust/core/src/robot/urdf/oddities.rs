@@ -25,10 +25,17 @@ pub(super) fn oddities(tree: &Tree) -> Vec<String> {
     warn("The axes of these joints are not of unit length (normalised)", named(not_of_unit_length));
     warn("The limits of these joints leave no range (kept as given)", named(without_range));
     // Frames behind fixed joints rarely have an inertia and need none.
-    let carried = tree.moving().map(|joint| joint.child.link.as_str());
+    let (bare, described): (Vec<&str>, Vec<&str>) = tree
+        .moving()
+        .map(|joint| joint.child.link.as_str())
+        .partition(|link| tree.without_inertial.contains(*link));
+    warn("These links move with a joint but have no <inertial> (taken as massless)", bare);
+    let links = &tree.robot.links;
+    let massless =
+        |name: &&str| links.iter().any(|link| link.name == **name && link.inertial.mass.value == 0.0);
     warn(
-        "These links move with a joint but have no <inertial> (taken as massless)",
-        carried.filter(|link| tree.without_inertial.contains(*link)).collect(),
+        "These links move with a joint but have zero mass (used as given)",
+        described.into_iter().filter(massless).collect(),
     );
     warnings
 }

@@ -48,8 +48,8 @@ pub(super) fn check_mass_matrix(description: &RobotDescription) -> Result<Option
         .collect();
     let text = || {
         format!(
-            "No mass or inertia moves with these joints, so the mass matrix is singular and forward dynamics is \
-             not available: {}",
+            "No mass or inertia moves with these joints, so the mass matrix is singular and the \
+             acceleration of forward dynamics is not to be relied on: {}",
             name_list(&names)
         )
     };
