@@ -58,6 +58,7 @@ EXAMPLES = [
     _example("anymal", "anymal_b_simple_description/robots/anymal.urdf", True),
 ]
 ATLAS = [
+    RobotFile("atlas_v3", SHARED / "robots/atlas/atlas_v3_simple_shapes.urdf", floating_base=True),
     RobotFile("atlas_v5", SHARED / "robots/atlas/atlas_v5_simple_shapes.urdf", floating_base=True),
     RobotFile("atlas_hull", SHARED / "robots/atlas/atlas_v5_convex_hull.urdf", floating_base=True),
 ]
