@@ -34,13 +34,9 @@ fn placement(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Pose> {
 }
 
 fn kind(py: Python<'_>, name: &str) -> PyResult<JointKind> {
-    match name {
-        "free_flyer" => Ok(JointKind::FreeFlyer),
-        "revolute" => Ok(JointKind::Revolute),
-        "continuous" => Ok(JointKind::Continuous),
-        "prismatic" => Ok(JointKind::Prismatic),
-        other => Err(input(py, format!("joints: unknown kind '{other}'"))),
-    }
+    let kinds = [JointKind::FreeFlyer, JointKind::Revolute, JointKind::Continuous, JointKind::Prismatic];
+    let found = kinds.into_iter().find(|kind| kind.name() == name);
+    found.ok_or_else(|| input(py, format!("joints: unknown kind '{name}'")))
 }
 
 fn joint(tuple: &Bound<'_, PyTuple>) -> PyResult<JointDescription> {

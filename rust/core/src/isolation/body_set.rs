@@ -25,23 +25,25 @@ impl BodySet {
         torque: &[f64],
         threshold: &[f64],
     ) {
-        self.member.fill(false);
-        self.member[first] = true;
-        for body in first + 1..robot.body_count() {
-            self.member[body] = self.member[robot.parent_body(body)]
-                && robot.velocity_range(body).enumerate().all(|(column, k)| {
-                    let axis = jacobian_column(robot, kinematics, body, column, &wrench.reference);
-                    (wrench.torque_on(&axis) - torque[k]).abs() <= threshold[k]
-                });
-        }
+        self.fill(robot, first, |body| {
+            robot.velocity_range(body).enumerate().all(|(column, k)| {
+                let axis = jacobian_column(robot, kinematics, body, column, &wrench.reference);
+                (wrench.torque_on(&axis) - torque[k]).abs() <= threshold[k]
+            })
+        });
     }
 
     /// `first` and every body behind it.
     pub fn grow_all(&mut self, robot: &Robot, first: usize) {
+        self.fill(robot, first, |_| true);
+    }
+
+    /// `first`, and every body behind a member that `joins`.
+    fn fill(&mut self, robot: &Robot, first: usize, joins: impl Fn(usize) -> bool) {
         self.member.fill(false);
         self.member[first] = true;
         for body in first + 1..robot.body_count() {
-            self.member[body] = self.member[robot.parent_body(body)];
+            self.member[body] = self.member[robot.parent_body(body)] && joins(body);
         }
     }
 

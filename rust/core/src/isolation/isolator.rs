@@ -6,7 +6,7 @@ use super::body_set::BodySet;
 use super::force::{explain_force, identify_force};
 use super::line::{best_first, LineCast};
 use super::result::{Candidate, Contact, Isolation};
-use super::wrench::{estimate_wrench, jacobian_column, WrenchEstimate};
+use super::wrench::{estimate_wrench, for_each_column, WrenchEstimate};
 use crate::detection::TipSearch;
 use crate::error::{Error, Result};
 use crate::robot::motion::stack;
@@ -141,6 +141,7 @@ impl ContactIsolator {
                     return;
                 }
                 self.name_link(tip);
+                self.isolation.candidates.clear();
                 // The torques do not exclude the links behind: a line can cross their joints' axes.
                 self.bodies.grow_all(&self.robot, tip);
                 self.isolation.link_candidates.clear();
@@ -323,11 +324,9 @@ impl ContactIsolator {
 
     /// Takes what a wrench on `body` explains out of the unexplained torque.
     fn explain(&mut self, kinematics: &Kinematics, body: usize, wrench: &WrenchEstimate) {
-        for &joint in self.robot.chain(body) {
-            for (column, k) in self.robot.velocity_range(joint).enumerate() {
-                let axis = jacobian_column(&self.robot, kinematics, joint, column, &wrench.reference);
-                self.unexplained[k] -= wrench.torque_on(&axis);
-            }
-        }
+        let Self { robot, unexplained, .. } = self;
+        for_each_column(robot, kinematics, body, &wrench.reference, |k, column| {
+            unexplained[k] -= wrench.torque_on(&column);
+        });
     }
 }

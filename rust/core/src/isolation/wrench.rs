@@ -50,6 +50,22 @@ pub(super) fn jacobian_column(
     stack(&(linear + angular.cross(reference)), &angular)
 }
 
+/// Calls `each` with every velocity variable from the base to `body` and its column at `reference`.
+#[inline]
+pub(super) fn for_each_column(
+    robot: &Robot,
+    kinematics: &Kinematics,
+    body: usize,
+    reference: &Vector3<f64>,
+    mut each: impl FnMut(usize, Vector6<f64>),
+) {
+    for &joint in robot.chain(body) {
+        for (column, k) in robot.velocity_range(joint).enumerate() {
+            each(k, jacobian_column(robot, kinematics, joint, column, reference));
+        }
+    }
+}
+
 /// Least squares over the chain of `body`, each torque weighted by its threshold.
 pub(super) fn estimate_wrench(
     robot: &Robot,
@@ -61,23 +77,21 @@ pub(super) fn estimate_wrench(
     let reference = kinematics.bodies[body].position;
     let mut rows = SMatrix::<f64, BLOCK, 7>::zeros();
     let (mut filled, mut count, mut unexplained) = (0, 0, 0.0);
-    for &joint in robot.chain(body) {
-        for (column, k) in robot.velocity_range(joint).enumerate() {
-            if filled == BLOCK {
-                rows = triangle(rows, &mut unexplained);
-                filled = 6;
-            }
-            let weight = 1.0 / threshold[k];
-            let axis = jacobian_column(robot, kinematics, joint, column, &reference) * weight;
-            for i in 0..3 {
-                rows[(filled, i)] = axis[i];
-                rows[(filled, 3 + i)] = axis[3 + i] / LEVER;
-            }
-            rows[(filled, 6)] = torque[k] * weight;
-            filled += 1;
-            count += 1;
+    for_each_column(robot, kinematics, body, &reference, |k, column| {
+        if filled == BLOCK {
+            rows = triangle(rows, &mut unexplained);
+            filled = 6;
         }
-    }
+        let weight = 1.0 / threshold[k];
+        let axis = column * weight;
+        for i in 0..3 {
+            rows[(filled, i)] = axis[i];
+            rows[(filled, 3 + i)] = axis[3 + i] / LEVER;
+        }
+        rows[(filled, 6)] = torque[k] * weight;
+        filled += 1;
+        count += 1;
+    });
     let rows = triangle(rows, &mut unexplained);
     let factor: Matrix6<f64> = rows.fixed_view::<6, 6>(0, 0).into_owned();
     let rhs: Vector6<f64> = rows.fixed_view::<6, 1>(0, 6).into_owned();

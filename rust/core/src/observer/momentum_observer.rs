@@ -98,19 +98,6 @@ impl MomentumObserver {
         if let Some(dt) = dt {
             check_time_step(dt)?;
         }
-        self.advance(q, v, tau, friction, dt);
-        Ok(&self.external_torque)
-    }
-
-    /// [`MomentumObserver::update`] on arguments that were checked.
-    pub(crate) fn advance(
-        &mut self,
-        q: &[f64],
-        v: &[f64],
-        tau: &[f64],
-        friction: Option<&[f64]>,
-        dt: Option<f64>,
-    ) {
         std::mem::swap(&mut self.momentum, &mut self.momentum_before);
         std::mem::swap(&mut self.known_rate, &mut self.known_rate_before);
         self.kinematics.set_configuration(&self.robot, q);
@@ -128,6 +115,7 @@ impl MomentumObserver {
         }
         self.started = true;
         self.acceleration_is_current = false;
+        Ok(&self.external_torque)
     }
 
     /// `r' = gain (dp/dt - known rate - r)`, exactly over a step on which `dp/dt - known rate` is constant.
