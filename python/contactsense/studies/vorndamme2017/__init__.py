@@ -1,4 +1,4 @@
-"""The experiments of Vorndamme 2017, section VI, on the packaged Atlas: one, two and five contacts at once."""
+"""The experiments of Vorndamme 2017, section VI, on the packaged Atlas: one, two, five pushes at once."""
 
 from .information import rank_deficit
 from .judge import Verdict, judge

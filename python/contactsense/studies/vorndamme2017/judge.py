@@ -17,7 +17,7 @@ NEAR = 0.01  # [m], a point counts as the true one
 
 @dataclass(frozen=True)
 class Verdict:
-    """One scene judged. The estimate of a contact is its point, or its first candidate's where that is open."""
+    """One scene judged. A contact's estimate is its point, or its first candidate's where that is open."""
 
     links: tuple[str, ...]  # truly touched
     named: tuple[str, ...]  # links of the contacts reported
