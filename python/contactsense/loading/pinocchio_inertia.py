@@ -13,7 +13,9 @@ from .description import FloatArray
 _ROUNDING = 1e-12
 
 IsBody = Callable[[Any], bool]
-LinkInertia = tuple[float, FloatArray, FloatArray]  # mass, centre of mass, inertia about it; in the link's frame
+LinkInertia = tuple[
+    float, FloatArray, FloatArray
+]  # mass, centre of mass, inertia about it; in the link's frame
 
 
 def is_locked(model: Any, index: int) -> bool:
@@ -37,10 +39,13 @@ def parent_frames(model: Any, is_body: IsBody) -> list[int | None]:
 def link_inertias(model: Any, parents: list[int | None], is_body: IsBody) -> dict[int, LinkInertia]:
     """{BODY frame: its own mass, centre of mass and inertia}.
 
-    A fixed joint's frame holds the inertia of the link it carries, the frame of a joint that was locked that of what
-    was its body, and a moving joint that of its whole body. What is left of a body is its first link's.
+    A fixed joint's frame holds the inertia of the link it carries, the frame of a joint that was locked that
+    of what was its body, and a moving joint that of its whole body. What is left of a body is its first
+    link's.
     """
-    carried = {parents[index]: index for index, frame in reversed(list(enumerate(model.frames))) if is_body(frame)}
+    carried = {
+        parents[index]: index for index, frame in reversed(list(enumerate(model.frames))) if is_body(frame)
+    }
     own = {index: np.zeros(10) for index, frame in enumerate(model.frames) if is_body(frame)}
     # Of each (formerly) moving body: what it weighs in all, and its links.
     rest = {-joint: _parameters(model.inertias[joint]) for joint in range(1, model.njoints)}

@@ -21,8 +21,8 @@ def links_of(
 ) -> tuple[dict[int, LinkTuple], dict[int, LinkTuple], list[str]]:
     """Links without shapes, {frame index: link} and {bare joint: link}, and warnings.
 
-    The first are the BODY frames, in the model's order; the second, named after their joints, come after them. A
-    link's `parent` is a position in this order.
+    The first are the BODY frames, in the model's order; the second, named after their joints, come after
+    them. A link's `parent` is a position in this order.
     """
     frames = [index for index, frame in enumerate(model.frames) if is_body(frame)]
     joints = [int(model.frames[index].parentJoint) for index in frames]

@@ -23,7 +23,8 @@ fn square(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Matrix3<f64>> {
     }
 }
 
-fn placement(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Pose> {
+/// A `(4, 4)` pose.
+pub fn placement(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Pose> {
     match rows::<4>(name, object)?.as_slice() {
         [a, b, c, _] => Ok(Pose {
             rotation: Matrix3::new(a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]),

@@ -1,6 +1,11 @@
 //! A six-axis force/torque sensor.
 
+use nalgebra::Matrix3;
+
 use crate::spatial::Pose;
+
+/// A pose's rotation may be off by this much.
+const RIGID_TOLERANCE: f64 = 1e-6;
 
 /// Which side's wrench a reading is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -44,4 +49,14 @@ pub struct ForceTorqueSensor {
     pub pose: Pose,
     /// What a reading means.
     pub convention: Convention,
+}
+
+impl ForceTorqueSensor {
+    /// Whether the pose is a rotation and a finite translation.
+    pub fn has_rigid_pose(&self) -> bool {
+        let Pose { rotation, translation } = &self.pose;
+        let finite = rotation.iter().chain(translation).all(|x| x.is_finite());
+        let skew = (rotation.transpose() * rotation - Matrix3::identity()).amax();
+        finite && skew < RIGID_TOLERANCE && rotation.determinant() > 0.0
+    }
 }

@@ -7,9 +7,6 @@ use crate::error::{Error, Result};
 use crate::robot::{Kinematics, Robot, WORLD};
 use crate::spatial::Pose;
 
-/// A pose's rotation may be off by this much.
-const RIGID_TOLERANCE: f64 = 1e-6;
-
 /// The sensors of one robot, in the order given, and the tree they form.
 #[derive(Debug, Clone)]
 pub struct SensorTree {
@@ -197,10 +194,7 @@ fn mount(robot: &Robot, sensor: &ForceTorqueSensor) -> Result<Mount> {
             sensor.link
         )));
     }
-    let Pose { rotation, translation } = &sensor.pose;
-    let finite = rotation.iter().chain(translation).all(|x| x.is_finite());
-    let skew = (rotation.transpose() * rotation - Matrix3::identity()).amax();
-    if !finite || skew > RIGID_TOLERANCE || rotation.determinant() < 0.0 {
+    if !sensor.has_rigid_pose() {
         return Err(Error::Input(format!(
             "sensors: the pose of '{name}' must be rigid: a rotation matrix and a finite translation [m]"
         )));
