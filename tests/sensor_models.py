@@ -82,7 +82,10 @@ class SensedModel:
         """The same motion of the model with more joints."""
         q, v, a = pin.neutral(self.model), np.zeros(self.model.nv), np.zeros(self.model.nv)
         for index in range(1, self.plain.njoints):
-            here, there = self.plain.joints[index], self.model.joints[self.model.getJointId(self.plain.names[index])]
+            here, there = (
+                self.plain.joints[index],
+                self.model.joints[self.model.getJointId(self.plain.names[index])],
+            )
             q[there.idx_q : there.idx_q + there.nq] = motion.q[here.idx_q : here.idx_q + here.nq]
             for target, source in ((v, motion.v), (a, motion.a)):
                 target[there.idx_v : there.idx_v + there.nv] = source[here.idx_v : here.idx_v + here.nv]
@@ -122,8 +125,10 @@ def moving_and_fixed_links(file: RobotFile) -> tuple[list[str], list[str]]:
     def is_moved(link: str) -> bool:
         if link not in moves:
             joint = joints.get(link)
-            moves[link] = file.floating_base if joint is None else (
-                joint.get("type") != "fixed" or is_moved(joint.find("parent").get("link"))
+            moves[link] = (
+                file.floating_base
+                if joint is None
+                else (joint.get("type") != "fixed" or is_moved(joint.find("parent").get("link")))
             )
         return moves[link]
 
