@@ -176,7 +176,7 @@ impl ContactMonitor {
 
     /// The contacts behind the collision torque.
     fn isolate(&mut self) {
-        self.isolator.isolate_at(self.observer.kinematics(), &self.collision_torque);
+        self.isolator.isolate_at(self.observer.kinematics(), &self.collision_torque, &[], None);
     }
 
     fn check_wrenches(&self, wrenches: Option<&[[f64; 6]]>) -> Result<()> {
