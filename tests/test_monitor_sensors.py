@@ -51,7 +51,7 @@ class Held:
         return total
 
     def readings(self) -> np.ndarray:
-        """What still sensors read: pushes and weights behind them, sensor axes; sensors at moving joints only."""
+        """What still sensors at moving joints read: pushes and weights behind them, sensor axes."""
         pin.framesForwardKinematics(self.model, self.data, self.q)
         rows = []
         for sensor in self.sensors:
@@ -156,6 +156,40 @@ def test_without_lag_a_fast_wanted_contact_would_alarm() -> None:
         report = held.tick(monitor)
         worst = max(worst, np.abs(report.external_torque - held.torque())[:5].max())
     assert worst > 2.0
+
+
+def test_a_fast_contact_on_a_free_arm_is_no_collision() -> None:
+    """The arm gives way, so that the compensation needs the acceleration before the observer knows it."""
+    held, monitor = arm("panda_link6", wanted=("panda_link6",), observer_gain=500.0, torque_threshold=0.5)
+    model, data = held.model, held.data
+    frame = model.getFrameId("panda_link6", pin.FrameType.BODY)
+    joint, place = model.frames[frame].parentJoint, pin.SE3(held.sensors[0].pose)
+    stiffness = np.array([200.0, 200.0, 200.0, 100.0, 50.0, 20.0, 10.0, 500.0, 500.0])
+    q, v, substeps = held.q.copy(), np.zeros(model.nv), 10
+    hand = model.getJointId("panda_joint7")
+    false, felt = 0.0, 0.0
+    for k in range(150):
+        for part in range(substeps):
+            time = (k + part / substeps) * DT
+            force = 60.0 * max(0.0, np.sin(2.0 * np.pi * 20.0 * (time - 0.02))) * np.array([0.7, -0.5, 0.5])
+            tau = held.weight - stiffness * (q - held.q) - 2.0 * v
+            pin.forwardKinematics(model, data, q)
+            local = data.oMi[hand].rotation.T @ force
+            external = pin.StdVec_Force()
+            external.extend(pin.Force.Zero() for _ in range(model.njoints))
+            external[hand] = pin.Force(local, np.cross([0.03, 0.02, 0.1], local))
+            a = pin.aba(model, data, q, v, tau, external).copy()
+            if part == 0:
+                pin.rnea(model, data, q, v, a, external)
+                reading = -place.actInv(data.f[joint]).vector
+                report = monitor.update(q, v, tau, reading[None])
+                false = max(false, np.abs(report.collision_torque).max())
+                felt = max(felt, np.abs(report.external_torque).max())
+                assert not report.collision
+            v = v + a * DT / substeps
+            q = q + v * DT / substeps
+    assert felt > 10.0
+    assert false < 0.02 * felt
 
 
 def test_a_sensor_narrows_the_region_down() -> None:
