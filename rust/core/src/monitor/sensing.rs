@@ -2,6 +2,7 @@
 
 use nalgebra::{Vector3, Vector6};
 
+use super::prompt_acceleration::PromptAcceleration;
 use crate::error::{Error, Result};
 use crate::observer::MomentumObserver;
 use crate::robot::motion::{split, stack};
@@ -23,10 +24,9 @@ pub(super) struct Sensing {
     /// How long a wanted sensor stays untrusted after a gap [s].
     settling_time: f64,
     unsettled: Vec<f64>,
-    /// What the sensors see beyond what the observer knows yet `(nv,)`.
-    ahead: Vec<f64>,
+    prompt: PromptAcceleration,
     wanted_torque: Vec<f64>,
-    /// Velocity variables behind wanted sensors.
+    /// Velocity variables that wanted contacts alone load: behind wanted sensors, and at the same joint.
     behind_wanted: Vec<bool>,
     blind: Vec<bool>,
     /// Of each sensor: its external wrench without wanted contacts.
@@ -59,7 +59,12 @@ impl Sensing {
             .collect();
         let mut behind_wanted = vec![false; gain.len()];
         for body in 1..robot.body_count() {
-            if tree.before_joint(robot, body).is_some_and(|sensor| is_wanted[sensor]) {
+            let at_joint = |sensor: usize| {
+                let link = &robot.links()[tree.link(sensor)];
+                link.body == body && link.parent.is_none_or(|parent| robot.links()[parent].body != body)
+            };
+            let before = tree.before_joint(robot, body).is_some_and(|sensor| is_wanted[sensor]);
+            if before || (0..tree.len()).any(|sensor| is_wanted[sensor] && at_joint(sensor)) {
                 behind_wanted[robot.velocity_range(body)].fill(true);
             }
         }
@@ -68,7 +73,7 @@ impl Sensing {
             lag: LaggedTorques::new(tree.len(), gain, dt),
             settling_time: SETTLING / slowest,
             unsettled: vec![0.0; tree.len()],
-            ahead: vec![0.0; gain.len()],
+            prompt: PromptAcceleration::new(gain.len()),
             wanted_torque: vec![0.0; gain.len()],
             blind: behind_wanted.clone(),
             behind_wanted,
@@ -84,20 +89,7 @@ impl Sensing {
         let robot = observer.robot().clone();
         let Self { compensator, lag, .. } = self;
         lag.step();
-        // The observer's acceleration is late by its low-pass, and a reading would be compensated wrongly until then.
-        // What the sensors see now, with the acceleration of the tick before, makes up for the delay.
-        compensator.compensate_at(observer.kinematics(), observer.last_acceleration(), readings);
-        self.tree.set_active(compensator.usable());
-        lag.set(&robot, observer.kinematics(), &self.tree, compensator.external());
-        self.ahead.fill(0.0);
-        for sensor in 0..self.tree.len() {
-            if self.tree.is_active(sensor) && self.tree.parent(sensor).is_none() {
-                lag.add_ahead(sensor, &mut self.ahead);
-            }
-        }
-        observer.accelerate_with(&self.ahead);
-        compensator.compensate_at(observer.kinematics(), observer.last_acceleration(), readings);
-        lag.set(&robot, observer.kinematics(), &self.tree, compensator.external());
+        self.prompt.correct(observer, compensator, lag, &mut self.tree, readings);
         lag.commit(compensator.external());
         self.find_blind(&robot, dt);
         self.exclude(observer.kinematics());
