@@ -3,7 +3,7 @@
 use nalgebra::{Vector3, Vector6};
 
 use super::prompt_acceleration::PromptAcceleration;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::observer::MomentumObserver;
 use crate::robot::motion::{split, stack};
 use crate::robot::{Kinematics, Robot};
@@ -31,6 +31,7 @@ pub(super) struct Sensing {
     blind: Vec<bool>,
     /// Of each sensor: its external wrench without wanted contacts.
     unwanted: Vec<Vector6<f64>>,
+    trusted: Vec<Vector6<f64>>,
 }
 
 impl Sensing {
@@ -43,20 +44,7 @@ impl Sensing {
         dt: f64,
     ) -> Result<Self> {
         let tree = compensator.tree().clone();
-        let mut is_wanted = vec![false; tree.len()];
-        for name in wanted {
-            let Some(sensor) = tree.find(name) else {
-                return Err(Error::Input(format!(
-                    "wanted_contacts: there is no sensor '{name}'; the sensors are {}",
-                    tree.names().join(", ")
-                )));
-            };
-            is_wanted[sensor] = true;
-        }
-        // What is behind a wanted contact's sensor is meant, too.
-        let is_wanted: Vec<bool> = (0..tree.len())
-            .map(|sensor| (0..tree.len()).any(|other| is_wanted[other] && tree.is_behind(sensor, other)))
-            .collect();
+        let is_wanted = tree.wanted(wanted)?;
         let mut behind_wanted = vec![false; gain.len()];
         for body in 1..robot.body_count() {
             let at_joint = |sensor: usize| {
@@ -78,6 +66,7 @@ impl Sensing {
             blind: behind_wanted.clone(),
             behind_wanted,
             unwanted: vec![Vector6::zeros(); tree.len()],
+            trusted: vec![Vector6::zeros(); tree.len()],
             wanted: is_wanted,
             tree,
             compensator,
@@ -93,6 +82,10 @@ impl Sensing {
         lag.commit(compensator.external());
         self.find_blind(&robot, dt);
         self.exclude(observer.kinematics());
+        for (sensor, trusted) in self.trusted.iter_mut().enumerate() {
+            let settled = self.unsettled[sensor] <= 0.0;
+            *trusted = if settled { self.compensator.external()[sensor] } else { Vector6::repeat(f64::NAN) };
+        }
     }
 
     /// As [`LoadCompensator::check_readings`].
@@ -125,10 +118,14 @@ impl Sensing {
         &self.tree
     }
 
-    /// Which sensors' contacts are wanted.
-    #[allow(dead_code)] // of use to isolation
-    pub fn wanted(&self) -> &[bool] {
-        &self.wanted
+    /// External wrenches of all sensors, NaN where one is left out, or is wanted and not settled.
+    pub fn trusted(&self) -> &[Vector6<f64>] {
+        &self.trusted
+    }
+
+    /// The sensors' torques as the observer knows them.
+    pub fn lag(&self) -> &LaggedTorques {
+        &self.lag
     }
 
     /// Forgets all ticks.
@@ -140,6 +137,7 @@ impl Sensing {
         self.wanted_torque.fill(0.0);
         self.blind.copy_from_slice(&self.behind_wanted);
         self.unwanted.fill(Vector6::zeros());
+        self.trusted.fill(Vector6::zeros());
     }
 
     /// Joints that a wanted contact may load unmeasured: on the chain of a wanted sensor without a settled reading,
