@@ -230,7 +230,7 @@ impl ContactIsolator {
         let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
         let exact = self.several.solve_exactly(scene, &mut self.rows);
         if exact && self.several.verified {
-            return self.identify_and_report(kinematics, None);
+            return self.identify_and_report(kinematics);
         }
         // Beside strong contacts that sensors see, a weak torque may be their error.
         if self.find_tips(LEFT_OVER) == 0 {
@@ -244,7 +244,7 @@ impl ContactIsolator {
             tip => {
                 let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
                 if exact || self.several.solve_roughly(scene, &self.rows, self.tips.tips()) {
-                    self.identify_and_report(kinematics, None);
+                    self.identify_and_report(kinematics);
                 } else if let Some(tip) = tip {
                     self.isolate_single(kinematics, tip);
                 } else {
@@ -276,13 +276,17 @@ impl ContactIsolator {
         WrenchEstimate::from_rows(rows, Vector3::zeros()).misfit() <= CONTRADICTION
     }
 
-    /// Several forces that explain a sensor's wrench and the torques behind it.
-    pub(super) fn solve_several(&mut self, kinematics: &Kinematics, root: Option<&Root>) -> bool {
-        self.set_rows(kinematics, root);
+    /// Several forces that explain a sensor's wrench and the torques behind it; where one force does, only if they fit
+    /// but for rounding.
+    pub(super) fn solve_several(&mut self, kinematics: &Kinematics, root: &Root, one_does: bool) -> bool {
+        self.set_rows(kinematics, Some(root));
         let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
         let exact = self.several.solve_exactly(scene, &mut self.rows);
+        if one_does && !(exact && self.several.verified) {
+            return false;
+        }
         self.find_tips(LEFT_OVER);
-        self.set_rows(kinematics, root);
+        self.set_rows(kinematics, Some(root));
         let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
         let solved = exact || self.several.solve_roughly(scene, &self.rows, self.tips.tips());
         if solved {
@@ -291,8 +295,8 @@ impl ContactIsolator {
         solved
     }
 
-    fn identify_and_report(&mut self, kinematics: &Kinematics, root: Option<&Root>) {
-        self.set_rows(kinematics, root);
+    fn identify_and_report(&mut self, kinematics: &Kinematics) {
+        self.set_rows(kinematics, None);
         let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
         self.several.identify(scene, &self.rows);
         self.report_several(kinematics);

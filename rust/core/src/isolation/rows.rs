@@ -37,6 +37,13 @@ pub(super) struct Root {
 }
 
 impl Root {
+    /// The wrench that is measured.
+    pub fn estimate(&self) -> WrenchEstimate {
+        let mut rows = WrenchRows::new();
+        self.push(&mut rows);
+        WrenchEstimate::from_rows(rows, Vector3::zeros())
+    }
+
     pub fn push(&self, rows: &mut WrenchRows) {
         for i in 0..6 {
             rows.push(&self.axes[i], self.value[i], 1.0 / self.tolerance[i]);

@@ -5,9 +5,9 @@ use nalgebra::{Vector3, Vector6};
 use super::isolator::{ContactIsolator, CONTRADICTION};
 use super::line::best_first;
 use super::result::{Candidate, Contact};
-use super::rows::{Root, WrenchRows, TORQUE_SHARE};
+use super::rows::{Root, TORQUE_SHARE};
 use super::several::{Found, Scene};
-use super::wrench::WrenchEstimate;
+use super::wrench::{jacobian_column, WrenchEstimate};
 use crate::robot::motion::{split, stack};
 use crate::robot::Kinematics;
 use crate::sensor::{is_known, sensor_torque, LaggedTorques};
@@ -44,10 +44,18 @@ impl ContactIsolator {
             };
             let region =
                 regions.tree.parent(sensor).map_or(&regions.base, |carrier| &regions.behind[carrier]);
-            for k in (0..explained.len()).filter(|k| region.feels[*k]) {
-                residual[k] -= explained[k];
-                measured[k] += explained[k].abs();
+            let position = regions.tree.position(kinematics, sensor);
+            for joint in region.chain(robot, regions.tree.body(sensor)) {
+                for (column, k) in robot.velocity_range(joint).enumerate() {
+                    residual[k] -= explained[k];
+                    // Components err one by one, also where their sum is small.
+                    let axis = jacobian_column(robot, kinematics, joint, column, &position);
+                    measured[k] += axis.component_mul(wrench).norm_squared();
+                }
             }
+        }
+        for (measured, torque) in measured.iter_mut().zip(torque).filter(|(measured, _)| **measured > 0.0) {
+            *measured = (*measured + torque * torque).sqrt();
         }
     }
 
@@ -63,7 +71,7 @@ impl ContactIsolator {
             return;
         }
         let (root, spread) = self.left_over(kinematics, sensor, wrenches);
-        let limits = &self.wrench_threshold[sensor];
+        let limits = self.wrench_threshold[sensor];
         let over = |share: f64| (0..6).any(|i| root.value[i].abs() > limits[i].max(share * spread[i]));
         if !over(0.0) {
             return;
@@ -71,7 +79,7 @@ impl ContactIsolator {
         let certain = over(LEFT_OVER);
         std::mem::swap(&mut self.region, &mut self.regions.behind[sensor]);
         let first = self.isolation.contacts.len();
-        self.locate(kinematics, &root, certain);
+        self.locate(kinematics, &root, &limits, certain);
         self.isolation.contacts[first..].iter_mut().for_each(|contact| contact.source = Some(sensor));
         std::mem::swap(&mut self.region, &mut self.regions.behind[sensor]);
     }
@@ -118,10 +126,8 @@ impl ContactIsolator {
 
     /// One force that explains the wrench, or several that explain it and the joints' torques; `certain`: the wrench
     /// is more than an error of the sensors.
-    fn locate(&mut self, kinematics: &Kinematics, root: &Root, certain: bool) {
-        let mut rows = WrenchRows::new();
-        root.push(&mut rows);
-        let wrench = WrenchEstimate::from_rows(rows, Vector3::zeros());
+    fn locate(&mut self, kinematics: &Kinematics, root: &Root, limits: &Vector6<f64>, certain: bool) {
+        let wrench = root.estimate();
         let moment = wrench.moment_along().abs();
         if moment > EXACT && !certain {
             return;
@@ -132,14 +138,20 @@ impl ContactIsolator {
             [tip] => Some(*tip),
             _ => None,
         };
+        if moment > EXACT {
+            let one_does = moment <= CONTRADICTION;
+            if self.solve_several(kinematics, root, one_does) {
+                return self.report_several(kinematics);
+            }
+        }
         if moment <= CONTRADICTION {
             if let Some(hit) = self.hit_in_region(kinematics, tip, &wrench) {
-                self.report_found(kinematics, &Found::new(wrench, hit), true);
+                // What contradicts the thresholds is not located.
+                let strict = Root { tolerance: std::array::from_fn(|i| limits[i]), ..*root };
+                let determined = moment <= EXACT || strict.estimate().moment_along().abs() <= CONTRADICTION;
+                self.report_found(kinematics, &Found::new(wrench, hit), determined);
                 return;
             }
-        } else if self.solve_several(kinematics, Some(root)) {
-            self.report_several(kinematics);
-            return;
         }
         // The wrench is known, the point is not.
         let body = tip.filter(|tip| self.region.links_of(&self.robot, *tip).next().is_some());
