@@ -11,7 +11,7 @@ use crate::observer::MomentumObserver;
 use crate::sensor::{LaggedTorques, LoadCompensator, SensorTree};
 
 /// Each leaves the share of the error that the inertia behind the sensors has in the robot's.
-const ROUNDS: usize = 6;
+const ROUNDS: usize = 10;
 
 /// Workspace `(nv,)`.
 #[derive(Debug, Clone)]
