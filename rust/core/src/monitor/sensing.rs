@@ -59,12 +59,7 @@ impl Sensing {
             .collect();
         let mut behind_wanted = vec![false; gain.len()];
         for body in 1..robot.body_count() {
-            let at_joint = |sensor: usize| {
-                let link = &robot.links()[tree.link(sensor)];
-                link.body == body && link.parent.is_none_or(|parent| robot.links()[parent].body != body)
-            };
-            let before = tree.before_joint(robot, body).is_some_and(|sensor| is_wanted[sensor]);
-            if before || (0..tree.len()).any(|sensor| is_wanted[sensor] && at_joint(sensor)) {
+            if tree.at_joint(robot, body).is_some_and(|sensor| is_wanted[sensor]) {
                 behind_wanted[robot.velocity_range(body)].fill(true);
             }
         }
@@ -73,7 +68,7 @@ impl Sensing {
             lag: LaggedTorques::new(tree.len(), gain, dt),
             settling_time: SETTLING / slowest,
             unsettled: vec![0.0; tree.len()],
-            prompt: PromptAcceleration::new(gain.len()),
+            prompt: PromptAcceleration::new(robot, &tree),
             wanted_torque: vec![0.0; gain.len()],
             blind: behind_wanted.clone(),
             behind_wanted,
@@ -123,12 +118,6 @@ impl Sensing {
     /// The sensors, those with a reading active.
     pub fn tree(&self) -> &SensorTree {
         &self.tree
-    }
-
-    /// Which sensors' contacts are wanted.
-    #[allow(dead_code)] // of use to isolation
-    pub fn wanted(&self) -> &[bool] {
-        &self.wanted
     }
 
     /// Forgets all ticks.
