@@ -120,11 +120,9 @@ proptest! {
             pose: Pose::identity(),
             convention: Convention::Support,
         };
-        let options = MonitorOptions {
-            sensors: vec![sensor("arm_2"), sensor("arm_5")],
-            wanted_contacts: vec!["arm_5".into()],
-            ..options()
-        };
+        let mut options = options();
+        options.isolation.sensors = vec![sensor("arm_2"), sensor("arm_5")];
+        options.isolation.wanted_contacts = vec!["arm_5".into()];
         let mut monitor = ContactMonitor::new(robot.clone(), &options).unwrap();
         let mut report = ContactReport::default();
         for (v, tau, readings) in ticks {
