@@ -1,8 +1,8 @@
 //! The bodies that can carry a contact, given what the joints behind the contact body do not feel
 //! (Vorndamme 2017, the correction after step 4).
 
+use super::found::Scene;
 use super::region::Region;
-use super::several::Scene;
 use super::wrench::{jacobian_column, WrenchEstimate};
 use crate::robot::Robot;
 

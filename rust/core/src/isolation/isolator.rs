@@ -5,11 +5,12 @@ use std::sync::Arc;
 use nalgebra::{Vector3, Vector6};
 
 use super::body_set::BodySet;
+use super::found::Scene;
 use super::line::LineCast;
 use super::region::{Region, Regions};
 use super::result::{Candidate, Isolation};
 use super::rows::{Root, TorqueRows, WrenchRows};
-use super::several::{Scene, SeveralContacts};
+use super::several::SeveralContacts;
 use super::wrench::WrenchEstimate;
 use crate::detection::{check_threshold, check_wrench_threshold, TipSearch};
 use crate::error::{Error, Result};

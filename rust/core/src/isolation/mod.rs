@@ -1,8 +1,10 @@
 //! Isolation and identification: where a contact is and how hard (Vorndamme 2017, section IV).
 
 mod body_set;
+mod caster;
 mod conics;
 mod force;
+mod found;
 mod isolator;
 mod least_squares;
 mod line;
@@ -17,6 +19,7 @@ mod several;
 mod single;
 mod stacked;
 mod surface_search;
+mod together;
 mod wrench;
 
 pub use isolator::{ContactIsolator, IsolatorOptions};

@@ -1,9 +1,9 @@
 //! From wrenches and hits to contacts, and how far they can be trusted.
 
 use super::force::{explain_force, identify_force};
+use super::found::Found;
 use super::isolator::{ContactIsolator, CONTRADICTION, SIGNIFICANCE};
 use super::result::{Candidate, Contact};
-use super::several::Found;
 use super::wrench::{for_each_column, WrenchEstimate};
 use crate::robot::motion::stack;
 use crate::robot::Kinematics;

@@ -2,11 +2,11 @@
 
 use nalgebra::{Vector3, Vector6};
 
+use super::found::{Found, Scene};
 use super::isolator::{ContactIsolator, CONTRADICTION};
 use super::line::best_first;
 use super::result::{Candidate, Contact};
 use super::rows::{Root, TORQUE_SHARE};
-use super::several::{Found, Scene};
 use super::wrench::{jacobian_column, WrenchEstimate};
 use crate::robot::motion::{split, stack};
 use crate::robot::Kinematics;

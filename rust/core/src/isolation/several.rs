@@ -5,64 +5,30 @@
 
 use nalgebra::Vector3;
 
-use super::line::{best_first, LineCast};
+use super::caster::Caster;
+use super::found::{Found, Scene, Solution};
 use super::open_part::{close, close_near};
 use super::pair::{estimate_pair, Open, PairEstimate};
-use super::region::Region;
 use super::result::Candidate;
 use super::rows::{TorqueRows, WrenchRows};
 use super::stacked::Stacked;
 use super::surface_search::{steepness, SurfaceSearch, STARTS};
 use super::wrench::WrenchEstimate;
 use crate::detection::TipSearch;
-use crate::robot::{Kinematics, Robot, WORLD};
+use crate::robot::{Robot, WORLD};
 
 /// What rounding leaves of an exact solution [tolerances].
 const EXACT: f64 = 1e-6;
 /// A joint that feels less than this feels nothing, if the torques are exact [tolerances].
-const SILENT: f64 = 1e-5;
+pub(super) const SILENT: f64 = 1e-5;
 /// Root mean square of what a good solution leaves under noise [tolerances].
 const GOOD: f64 = 1.0;
 /// Misfit of a solution between samples of the surfaces, which is not exact.
 const INEXACT: f64 = f64::INFINITY;
 /// Solutions kept.
 const SOLUTIONS: usize = 16;
-/// Hits of one line that are looked at.
-const HITS: usize = 256;
 /// Rounds until the contact links stand still; ten, as in Vorndamme 2017.
 const ROUNDS: usize = 10;
-
-/// A contact that is found.
-#[derive(Debug, Clone)]
-pub(super) struct Found {
-    pub wrench: WrenchEstimate,
-    pub hit: Candidate,
-    /// Of all torques, with the point known; else that of the wrench.
-    pub force: Vector3<f64>,
-}
-
-impl Found {
-    pub fn new(wrench: WrenchEstimate, hit: Candidate) -> Self {
-        let force = wrench.force;
-        Self { wrench, hit, force }
-    }
-}
-
-/// One way to explain the torques by two forces.
-#[derive(Debug, Clone)]
-pub(super) struct Solution {
-    pub contacts: [Found; 2],
-    pub misfit: f64,
-    steepness: f64,
-}
-
-/// Where the search is.
-#[derive(Clone, Copy)]
-pub(super) struct Scene<'a> {
-    pub robot: &'a Robot,
-    pub kinematics: &'a Kinematics,
-    pub region: &'a Region,
-}
 
 /// Workspace, and the answer: contacts found one by one, and solutions for two more, best first.
 #[derive(Debug, Clone)]
@@ -77,14 +43,13 @@ pub(super) struct SeveralContacts {
     pub contradicted: bool,
     /// Whether more components are open than two forces on lines have conditions: the solutions are samples.
     pub open: bool,
-    max_contacts: usize,
+    pub(super) max_contacts: usize,
     tips: TipSearch,
-    line: LineCast,
-    hits: Vec<Candidate>,
+    pub(super) caster: Caster,
     search: SurfaceSearch,
-    stacked: Stacked,
-    bodies: Vec<usize>,
-    places: Vec<(usize, Vector3<f64>)>,
+    pub(super) stacked: Stacked,
+    pub(super) bodies: Vec<usize>,
+    pub(super) places: Vec<(usize, Vector3<f64>)>,
 }
 
 impl SeveralContacts {
@@ -98,8 +63,7 @@ impl SeveralContacts {
             open: false,
             max_contacts,
             tips: TipSearch::new(robot),
-            line: LineCast::new(),
-            hits: Vec::with_capacity(HITS),
+            caster: Caster::new(),
             search: SurfaceSearch::new(robot),
             stacked: Stacked::new(robot, max_contacts),
             bodies: Vec::with_capacity(max_contacts + 1),
@@ -191,90 +155,6 @@ impl SeveralContacts {
         tips.len() > 1 && self.solve_together(scene, rows, GOOD)
     }
 
-    /// Forces on all of `bodies`, or on one more before them, that explain the torques but for `limit` and are
-    /// determined by them.
-    fn solve_together(&mut self, scene: Scene, rows: &TorqueRows, limit: f64) -> bool {
-        let (found, tips) = (self.found.len(), self.bodies.len());
-        if tips < 2 || found + tips > self.max_contacts {
-            return false;
-        }
-        if self.stack(scene, rows, limit).is_some() {
-            return true;
-        }
-        if found + tips == self.max_contacts {
-            return false;
-        }
-        let mut best: Option<(f64, usize)> = None;
-        for before in 1..scene.robot.body_count() {
-            let carries = |tip: &usize| scene.region.chain(scene.robot, *tip).any(|joint| joint == before);
-            if self.bodies[..tips].contains(&before) || !self.bodies[..tips].iter().any(carries) {
-                continue;
-            }
-            self.bodies.push(before);
-            if let Some(misfit) = self.stack(scene, rows, limit) {
-                if best.is_none_or(|(least, _)| misfit < least) {
-                    best = Some((misfit, before));
-                }
-            }
-            self.found.truncate(found);
-            self.bodies.truncate(tips);
-        }
-        let Some((_, before)) = best else { return false };
-        self.bodies.push(before);
-        self.stack(scene, rows, limit).is_some()
-    }
-
-    /// Least squares for forces on `bodies`, or on bodies behind them that their lines hit; the misfit if they are
-    /// determined and explain the torques but for `limit`.
-    fn stack(&mut self, scene: Scene, rows: &TorqueRows, limit: f64) -> Option<f64> {
-        let found = self.found.len();
-        let mut bodies = std::mem::take(&mut self.bodies);
-        let mut misfit = None;
-        for _ in 0..ROUNDS {
-            if self.stacked.estimate(scene, rows, &bodies) > 0 {
-                break;
-            }
-            let Some(left) = self.stacked.misfit(limit) else { break };
-            let mut moved = false;
-            for body in &mut bodies {
-                let wrench = self.stacked.wrench(self.found.len() - found);
-                let Some(hit) = self.hit_behind(scene, rows, *body, &wrench, limit) else { break };
-                moved |= scene.robot.links[hit.link].body != *body;
-                *body = scene.robot.links[hit.link].body;
-                self.found.push(Found::new(wrench, hit));
-            }
-            if self.found.len() == found + bodies.len() && !moved {
-                misfit = Some(left);
-                break;
-            }
-            let missed = self.found.len() < found + bodies.len();
-            self.found.truncate(found);
-            if missed {
-                break;
-            }
-        }
-        self.bodies = bodies;
-        self.verified = misfit.is_some();
-        misfit
-    }
-
-    /// The forces of all contacts at their points, those of the first solution among them (Vorndamme 2017,
-    /// eqs. 29-30).
-    pub fn identify(&mut self, scene: Scene, rows: &TorqueRows) {
-        let best = self.solutions.first().into_iter().flat_map(|solution| &solution.contacts);
-        self.places.clear();
-        self.places.extend(self.found.iter().chain(best).map(|found| {
-            (scene.robot.links[found.hit.link].body, found.hit.point - scene.kinematics.origin)
-        }));
-        if !self.stacked.identify(scene, rows, &self.places) {
-            return;
-        }
-        let best = self.solutions.first_mut().into_iter().flat_map(|solution| &mut solution.contacts);
-        for (index, found) in self.found.iter_mut().chain(best).enumerate() {
-            found.force = self.stacked.force(index);
-        }
-    }
-
     /// The last contact: all that is left is one force.
     fn find_last(&mut self, scene: Scene, rows: &TorqueRows, tip: usize) -> bool {
         let mut wrench_rows = WrenchRows::new();
@@ -284,7 +164,7 @@ impl SeveralContacts {
         }
         let wrench = WrenchEstimate::from_rows(wrench_rows, Vector3::zeros());
         let exact = wrench.rank == 6 && wrench.misfit() <= EXACT;
-        let hit = if exact { self.hit_behind(scene, rows, tip, &wrench, EXACT) } else { None };
+        let hit = if exact { self.caster.hit_behind(scene, rows, tip, &wrench, EXACT) } else { None };
         hit.map(|hit| self.found.push(Found::new(wrench, hit))).is_some()
     }
 
@@ -308,7 +188,7 @@ impl SeveralContacts {
             if wrench.misfit() > EXACT {
                 return false;
             }
-            let Some(hit) = self.hit_behind(scene, rows, tip, &wrench, EXACT) else { return false };
+            let Some(hit) = self.caster.hit_behind(scene, rows, tip, &wrench, EXACT) else { return false };
             rows.explain(robot, region, tip, &wrench);
             self.found.push(Found::new(wrench, hit));
             return true;
@@ -337,7 +217,7 @@ impl SeveralContacts {
             if exceeds(misfit, limit) {
                 return false;
             }
-            let hits = [0, 1].map(|i| self.hit_behind(scene, rows, bodies[i], &wrenches[i], limit));
+            let hits = [0, 1].map(|i| self.caster.hit_behind(scene, rows, bodies[i], &wrenches[i], limit));
             let [Some(first), Some(second)] = hits else { return false };
             let hit_bodies = [first, second].map(|hit| scene.robot.links[hit.link].body);
             if hit_bodies == bodies {
@@ -387,7 +267,7 @@ impl SeveralContacts {
         if exceeds(misfit, limit) {
             return false;
         }
-        let hits = [0, 1].map(|i| self.hit_on(scene, pair.bodies[i], &wrenches[i]));
+        let hits = [0, 1].map(|i| self.caster.hit_on(scene, pair.bodies[i], &wrenches[i]));
         let [Some(first), Some(second)] = hits else { return false };
         self.keep(wrenches, [first, second], misfit);
         true
@@ -403,51 +283,6 @@ impl SeveralContacts {
             self.solutions.insert(rank, Solution { contacts, misfit, steepness: steep });
             self.solutions.truncate(SOLUTIONS);
         }
-    }
-
-    /// Where the line of action enters the body.
-    fn hit_on(&mut self, scene: Scene, body: usize, wrench: &WrenchEstimate) -> Option<Candidate> {
-        let (start, direction) = wrench.line_of_action()?;
-        self.hits.clear();
-        for link in scene.region.links_of(scene.robot, body) {
-            self.line.cast(scene.robot, scene.kinematics, link, &start, &direction, &mut self.hits);
-        }
-        best_first(&mut self.hits);
-        self.hits.first().copied().filter(|hit| hit.pushing)
-    }
-
-    /// The same, or on a body behind whose joints feel what the wrench would cause, but for `limit`.
-    fn hit_behind(
-        &mut self,
-        scene: Scene,
-        rows: &TorqueRows,
-        body: usize,
-        wrench: &WrenchEstimate,
-        limit: f64,
-    ) -> Option<Candidate> {
-        let hit = self.hit_on(scene, body, wrench);
-        if hit.is_some() {
-            return hit;
-        }
-        let robot = scene.robot;
-        let agrees = |joint: usize| {
-            robot.velocity_range(joint).all(|k| {
-                (wrench.torque_on(&rows.axes[k]) - rows.torque[k]).abs()
-                    <= limit.max(SILENT) * rows.tolerance[k]
-            })
-        };
-        let behind = |other: usize| {
-            let mut chain = robot.chain(other).iter().skip_while(|joint| **joint != body).skip(1).peekable();
-            chain.peek().is_some() && chain.all(|joint| scene.region.joints[*joint] && agrees(*joint))
-        };
-        let mut best: Option<Candidate> = None;
-        for other in body + 1..robot.body_count() {
-            if behind(other) {
-                let hit = self.hit_on(scene, other, wrench);
-                best = best.into_iter().chain(hit).min_by(|a, b| a.distance.total_cmp(&b.distance));
-            }
-        }
-        best
     }
 }
 

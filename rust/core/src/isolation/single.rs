@@ -1,9 +1,9 @@
 //! One force: link, line of action, point (Vorndamme 2017, steps 1 to 4, eqs. 22-26).
 
+use super::found::Scene;
 use super::isolator::{ContactIsolator, SIGNIFICANCE};
 use super::line::best_first;
 use super::result::{Candidate, Isolation};
-use super::several::Scene;
 use super::wrench::{estimate_wrench, WrenchEstimate};
 use crate::robot::Kinematics;
 

@@ -3,9 +3,10 @@
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 
+use super::found::Scene;
 use super::least_squares::LeastSquares;
 use super::rows::{Root, TorqueRows, LEVER};
-use super::several::{exceeds, Scene};
+use super::several::exceeds;
 use super::wrench::{WrenchEstimate, RANK_TOLERANCE};
 use crate::robot::Robot;
 

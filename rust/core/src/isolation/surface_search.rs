@@ -5,10 +5,10 @@
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
+use super::found::Scene;
 use super::pair::{Open, PairEstimate};
 use super::result::Candidate;
 use super::rows::LEVER;
-use super::several::Scene;
 use crate::robot::Robot;
 use crate::surface::SurfacePoint;
 

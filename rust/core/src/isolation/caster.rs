@@ -1,0 +1,69 @@
+//! Where a line of action enters a body, or one behind it.
+
+use super::found::Scene;
+use super::line::{best_first, LineCast};
+use super::result::Candidate;
+use super::rows::TorqueRows;
+use super::several::SILENT;
+use super::wrench::WrenchEstimate;
+
+/// Hits of one line that are looked at.
+const HITS: usize = 256;
+
+/// Workspace.
+#[derive(Debug, Clone)]
+pub(super) struct Caster {
+    line: LineCast,
+    hits: Vec<Candidate>,
+}
+
+impl Caster {
+    pub fn new() -> Self {
+        Self { line: LineCast::new(), hits: Vec::with_capacity(HITS) }
+    }
+
+    /// Where the line of action enters the body.
+    pub fn hit_on(&mut self, scene: Scene, body: usize, wrench: &WrenchEstimate) -> Option<Candidate> {
+        let (start, direction) = wrench.line_of_action()?;
+        self.hits.clear();
+        for link in scene.region.links_of(scene.robot, body) {
+            self.line.cast(scene.robot, scene.kinematics, link, &start, &direction, &mut self.hits);
+        }
+        best_first(&mut self.hits);
+        self.hits.first().copied().filter(|hit| hit.pushing)
+    }
+
+    /// The same, or on a body behind whose joints feel what the wrench would cause, but for `limit`.
+    pub fn hit_behind(
+        &mut self,
+        scene: Scene,
+        rows: &TorqueRows,
+        body: usize,
+        wrench: &WrenchEstimate,
+        limit: f64,
+    ) -> Option<Candidate> {
+        let hit = self.hit_on(scene, body, wrench);
+        if hit.is_some() {
+            return hit;
+        }
+        let robot = scene.robot;
+        let agrees = |joint: usize| {
+            robot.velocity_range(joint).all(|k| {
+                (wrench.torque_on(&rows.axes[k]) - rows.torque[k]).abs()
+                    <= limit.max(SILENT) * rows.tolerance[k]
+            })
+        };
+        let behind = |other: usize| {
+            let mut chain = robot.chain(other).iter().skip_while(|joint| **joint != body).skip(1).peekable();
+            chain.peek().is_some() && chain.all(|joint| scene.region.joints[*joint] && agrees(*joint))
+        };
+        let mut best: Option<Candidate> = None;
+        for other in body + 1..robot.body_count() {
+            if behind(other) {
+                let hit = self.hit_on(scene, other, wrench);
+                best = best.into_iter().chain(hit).min_by(|a, b| a.distance.total_cmp(&b.distance));
+            }
+        }
+        best
+    }
+}

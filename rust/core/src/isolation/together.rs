@@ -1,0 +1,94 @@
+//! Any number of contacts at once, and the forces of all of them (Vorndamme 2017, eqs. 28-30).
+
+use super::found::{Found, Scene};
+use super::rows::TorqueRows;
+use super::several::SeveralContacts;
+
+/// Rounds until the contact links stand still; ten, as in Vorndamme 2017.
+const ROUNDS: usize = 10;
+
+impl SeveralContacts {
+    /// Forces on all of `bodies`, or on one more before them, that explain the torques but for `limit` and are
+    /// determined by them.
+    pub(super) fn solve_together(&mut self, scene: Scene, rows: &TorqueRows, limit: f64) -> bool {
+        let (found, tips) = (self.found.len(), self.bodies.len());
+        if tips < 2 || found + tips > self.max_contacts {
+            return false;
+        }
+        if self.stack(scene, rows, limit).is_some() {
+            return true;
+        }
+        if found + tips == self.max_contacts {
+            return false;
+        }
+        let mut best: Option<(f64, usize)> = None;
+        for before in 1..scene.robot.body_count() {
+            let carries = |tip: &usize| scene.region.chain(scene.robot, *tip).any(|joint| joint == before);
+            if self.bodies[..tips].contains(&before) || !self.bodies[..tips].iter().any(carries) {
+                continue;
+            }
+            self.bodies.push(before);
+            if let Some(misfit) = self.stack(scene, rows, limit) {
+                if best.is_none_or(|(least, _)| misfit < least) {
+                    best = Some((misfit, before));
+                }
+            }
+            self.found.truncate(found);
+            self.bodies.truncate(tips);
+        }
+        let Some((_, before)) = best else { return false };
+        self.bodies.push(before);
+        self.stack(scene, rows, limit).is_some()
+    }
+
+    /// Least squares for forces on `bodies`, or on bodies behind them that their lines hit; the misfit if they are
+    /// determined and explain the torques but for `limit`.
+    fn stack(&mut self, scene: Scene, rows: &TorqueRows, limit: f64) -> Option<f64> {
+        let found = self.found.len();
+        let mut bodies = std::mem::take(&mut self.bodies);
+        let mut misfit = None;
+        for _ in 0..ROUNDS {
+            if self.stacked.estimate(scene, rows, &bodies) > 0 {
+                break;
+            }
+            let Some(left) = self.stacked.misfit(limit) else { break };
+            let mut moved = false;
+            for body in &mut bodies {
+                let wrench = self.stacked.wrench(self.found.len() - found);
+                let Some(hit) = self.caster.hit_behind(scene, rows, *body, &wrench, limit) else { break };
+                moved |= scene.robot.links[hit.link].body != *body;
+                *body = scene.robot.links[hit.link].body;
+                self.found.push(Found::new(wrench, hit));
+            }
+            if self.found.len() == found + bodies.len() && !moved {
+                misfit = Some(left);
+                break;
+            }
+            let missed = self.found.len() < found + bodies.len();
+            self.found.truncate(found);
+            if missed {
+                break;
+            }
+        }
+        self.bodies = bodies;
+        self.verified = misfit.is_some();
+        misfit
+    }
+
+    /// The forces of all contacts at their points, those of the first solution among them (Vorndamme 2017,
+    /// eqs. 29-30).
+    pub fn identify(&mut self, scene: Scene, rows: &TorqueRows) {
+        let best = self.solutions.first().into_iter().flat_map(|solution| &solution.contacts);
+        self.places.clear();
+        self.places.extend(self.found.iter().chain(best).map(|found| {
+            (scene.robot.links[found.hit.link].body, found.hit.point - scene.kinematics.origin)
+        }));
+        if !self.stacked.identify(scene, rows, &self.places) {
+            return;
+        }
+        let best = self.solutions.first_mut().into_iter().flat_map(|solution| &mut solution.contacts);
+        for (index, found) in self.found.iter_mut().chain(best).enumerate() {
+            found.force = self.stacked.force(index);
+        }
+    }
+}
