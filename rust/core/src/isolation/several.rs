@@ -1,0 +1,351 @@
+//! Which bodies are touched if one force does not explain the torques, and where (Vorndamme 2017, IV-B, and beyond).
+//!
+//! Forces that the joints behind the others determine are found one by one from the tips; two that share their joints
+//! are solved for together. What is known of contacts helps: no moment, on the surface, pushing.
+
+use nalgebra::Vector3;
+
+use super::line::{best_first, LineCast};
+use super::open_part;
+use super::pair::{estimate_pair, Open, PairEstimate};
+use super::region::Region;
+use super::result::Candidate;
+use super::rows::{TorqueRows, WrenchRows};
+use super::surface_search::{steepness, SurfaceSearch};
+use super::wrench::WrenchEstimate;
+use crate::detection::TipSearch;
+use crate::robot::{Kinematics, Robot, WORLD};
+
+/// What rounding leaves of an exact solution [tolerances].
+const EXACT: f64 = 1e-6;
+/// A joint that feels less than this feels nothing, if the torques are exact [tolerances].
+const SILENT: f64 = 1e-5;
+/// Root mean square of what a good solution leaves under noise [tolerances].
+const GOOD: f64 = 1.0;
+/// Solutions kept.
+const SOLUTIONS: usize = 8;
+/// Hits of one line that are looked at.
+const HITS: usize = 256;
+/// Rounds until the contact links stand still; ten, as in Vorndamme 2017.
+const ROUNDS: usize = 10;
+
+/// A contact that is found.
+#[derive(Debug, Clone)]
+pub(super) struct Found {
+    pub wrench: WrenchEstimate,
+    pub hit: Candidate,
+}
+
+/// One way to explain the torques by two forces.
+#[derive(Debug, Clone)]
+pub(super) struct Solution {
+    pub contacts: [Found; 2],
+    misfit: f64,
+    steepness: f64,
+}
+
+/// Where the search is.
+#[derive(Clone, Copy)]
+pub(super) struct Scene<'a> {
+    pub robot: &'a Robot,
+    pub kinematics: &'a Kinematics,
+    pub region: &'a Region,
+}
+
+/// Workspace, and the answer: contacts found one by one, and solutions for two more, best first.
+#[derive(Debug, Clone)]
+pub(super) struct SeveralContacts {
+    pub found: Vec<Found>,
+    pub solutions: Vec<Solution>,
+    /// Of the solutions.
+    pub rank_deficit: usize,
+    /// Whether more conditions were met than unknowns were fitted.
+    pub verified: bool,
+    max_contacts: usize,
+    tips: TipSearch,
+    line: LineCast,
+    hits: Vec<Candidate>,
+    search: SurfaceSearch,
+}
+
+impl SeveralContacts {
+    pub fn new(robot: &Robot, max_contacts: usize) -> Self {
+        Self {
+            found: Vec::with_capacity(max_contacts),
+            solutions: Vec::with_capacity(SOLUTIONS + 1),
+            rank_deficit: 0,
+            verified: false,
+            max_contacts,
+            tips: TipSearch::new(robot),
+            line: LineCast::new(),
+            hits: Vec::with_capacity(HITS),
+            search: SurfaceSearch::new(robot),
+        }
+    }
+
+    /// No robot: a placeholder that costs no memory.
+    pub fn empty() -> Self {
+        Self {
+            found: Vec::new(),
+            solutions: Vec::new(),
+            rank_deficit: 0,
+            verified: false,
+            max_contacts: 0,
+            tips: TipSearch::empty(),
+            line: LineCast::empty(),
+            hits: Vec::new(),
+            search: SurfaceSearch::empty(),
+        }
+    }
+
+    fn clear(&mut self) {
+        self.found.clear();
+        self.solutions.clear();
+        self.rank_deficit = 0;
+        self.verified = false;
+    }
+
+    /// Contacts that explain the torques but for rounding. Uses up `rows`.
+    pub fn solve_exactly(&mut self, scene: Scene, rows: &mut TorqueRows) -> bool {
+        self.clear();
+        let Scene { robot, region, .. } = scene;
+        while self.found.len() < self.max_contacts {
+            let felt = |k: usize| rows.torque[k].abs() > SILENT * rows.tolerance[k];
+            let tips = self.tips.find(robot, felt);
+            let count = tips.len();
+            let [first, second] = [0, 1].map(|i| tips.get(i).copied().unwrap_or(WORLD));
+            match count {
+                0 => {
+                    self.verified = true;
+                    return !self.found.is_empty();
+                }
+                1 => {
+                    if self.find_last(scene, rows, first) {
+                        self.verified = true;
+                        return true;
+                    }
+                    let before = first_unexplained(scene, rows, first).map(|joint| robot.parent_body(joint));
+                    if before.is_some_and(|before| self.solve_pair(scene, rows, [before, first], EXACT)) {
+                        return true;
+                    }
+                }
+                2 => {
+                    if self.solve_pair(scene, rows, [second, first], EXACT) {
+                        return true;
+                    }
+                }
+                _ => {}
+            }
+            if !(0..count).any(|index| self.peel(scene, rows, index)) {
+                return false;
+            }
+        }
+        false
+    }
+
+    /// Two contacts that explain the torques within their tolerances. `tips` feel them.
+    pub fn solve_roughly(&mut self, scene: Scene, rows: &TorqueRows, tips: &[usize]) -> bool {
+        self.clear();
+        match *tips {
+            [tip] => {
+                let mut best: Option<(f64, usize)> = None;
+                for before in scene.region.chain(scene.robot, tip).filter(|before| *before != tip) {
+                    let solved = self.solve_pair(scene, rows, [before, tip], GOOD) && self.verified;
+                    if let (true, Some(solution)) = (solved, self.solutions.first()) {
+                        if best.is_none_or(|(misfit, _)| solution.misfit < misfit) {
+                            best = Some((solution.misfit, before));
+                        }
+                    }
+                }
+                best.is_some_and(|(_, before)| self.solve_pair(scene, rows, [before, tip], GOOD))
+            }
+            [first, second] => self.solve_pair(scene, rows, [second, first], GOOD) && self.verified,
+            _ => false,
+        }
+    }
+
+    /// The last contact: all that is left is one force.
+    fn find_last(&mut self, scene: Scene, rows: &TorqueRows, tip: usize) -> bool {
+        let mut wrench_rows = WrenchRows::new();
+        rows.push_root(&mut wrench_rows);
+        for joint in scene.region.chain(scene.robot, tip) {
+            rows.push_joint(scene.robot, joint, &mut wrench_rows);
+        }
+        let wrench = WrenchEstimate::from_rows(wrench_rows, Vector3::zeros());
+        let exact = wrench.rank == 6 && wrench.misfit() <= EXACT;
+        let hit = if exact { self.hit_behind(scene, rows, tip, &wrench, EXACT) } else { None };
+        hit.map(|hit| self.found.push(Found { wrench, hit })).is_some()
+    }
+
+    /// A tip whose force follows from the outermost joints that feel no other tip's: takes it out of the torques.
+    fn peel(&mut self, scene: Scene, rows: &mut TorqueRows, index: usize) -> bool {
+        let Scene { robot, region, .. } = scene;
+        let tips = self.tips.tips();
+        let tip = tips[index];
+        let shared = |joint: &usize| tips.iter().any(|other| *other != tip && robot.chain(*other).contains(joint));
+        let mut wrench_rows = WrenchRows::new();
+        for joint in region.chain(robot, tip).rev().take_while(|joint| !shared(joint)) {
+            rows.push_joint(robot, joint, &mut wrench_rows);
+            if wrench_rows.count < 6 {
+                continue;
+            }
+            let wrench = WrenchEstimate::from_rows(wrench_rows.clone(), Vector3::zeros());
+            if wrench.rank < 6 {
+                continue;
+            }
+            if wrench.misfit() > EXACT {
+                return false;
+            }
+            let Some(hit) = self.hit_behind(scene, rows, tip, &wrench, EXACT) else { return false };
+            rows.explain(robot, region, tip, &wrench);
+            self.found.push(Found { wrench, hit });
+            return true;
+        }
+        false
+    }
+
+    /// Every pair of forces on two bodies, or on bodies behind them that their lines hit, that explains the torques
+    /// but for `limit`.
+    fn solve_pair(&mut self, scene: Scene, rows: &TorqueRows, mut bodies: [usize; 2], limit: f64) -> bool {
+        self.solutions.clear();
+        if self.found.len() + 2 > self.max_contacts {
+            return false;
+        }
+        for _ in 0..ROUNDS {
+            let Some(pair) = estimate_pair(scene.robot, scene.region, rows, bodies) else { return false };
+            self.rank_deficit = pair.deficit;
+            self.verified = pair.checks() > 0;
+            if pair.deficit > 0 {
+                self.close(scene, &pair, limit);
+                return !self.solutions.is_empty();
+            }
+            let wrenches = pair.wrenches(&[0.0; 6]);
+            let misfit = pair.misfit(&wrenches);
+            // Also where the misfit is not a number.
+            if !(misfit <= limit) {
+                return false;
+            }
+            let hits = [0, 1].map(|i| self.hit_behind(scene, rows, bodies[i], &wrenches[i], limit));
+            let [Some(first), Some(second)] = hits else { return false };
+            let hit_bodies = [first, second].map(|hit| scene.robot.links[hit.link].body);
+            if hit_bodies == bodies {
+                self.keep(wrenches, [first, second], misfit);
+                return true;
+            }
+            if hit_bodies[0] == hit_bodies[1] {
+                return false;
+            }
+            bodies = hit_bodies;
+        }
+        false
+    }
+
+    /// Closes a rank deficit by what is known of contacts.
+    fn close(&mut self, scene: Scene, pair: &PairEstimate, limit: f64) {
+        if pair.deficit <= 2 {
+            let (closed, count) = open_part::close(pair);
+            closed[..count].iter().for_each(|open| self.try_open(scene, pair, open, limit));
+            return;
+        }
+        if pair.misfit(&pair.wrenches(&[0.0; 6])).is_nan() {
+            return;
+        }
+        // Taken out for the time, since each start needs the rest.
+        let mut search = std::mem::replace(&mut self.search, SurfaceSearch::empty());
+        search.search(scene, pair, |open| self.try_open(scene, pair, open, limit));
+        self.search = search;
+    }
+
+    fn try_open(&mut self, scene: Scene, pair: &PairEstimate, open: &Open, limit: f64) {
+        let wrenches = pair.wrenches(open);
+        let misfit = pair.misfit(&wrenches);
+        if !(misfit <= limit) {
+            return;
+        }
+        let hits = [0, 1].map(|i| self.hit_on(scene, pair.bodies[i], &wrenches[i]));
+        if let [Some(first), Some(second)] = hits {
+            self.keep(wrenches, [first, second], misfit);
+        }
+    }
+
+    /// Adds a solution in its place: those that push most squarely first.
+    fn keep(&mut self, wrenches: [WrenchEstimate; 2], hits: [Candidate; 2], misfit: f64) {
+        let steep: f64 = wrenches.iter().zip(&hits).map(|(w, hit)| steepness(&w.force, &hit.normal)).sum();
+        let rank = self.solutions.partition_point(|other| other.steepness <= steep);
+        if rank < SOLUTIONS {
+            let [first, second] = wrenches;
+            let contacts = [Found { wrench: first, hit: hits[0] }, Found { wrench: second, hit: hits[1] }];
+            self.solutions.insert(rank, Solution { contacts, misfit, steepness: steep });
+            self.solutions.truncate(SOLUTIONS);
+        }
+    }
+
+    /// Where the line of action enters the body.
+    fn hit_on(&mut self, scene: Scene, body: usize, wrench: &WrenchEstimate) -> Option<Candidate> {
+        let (start, direction) = wrench.line_of_action()?;
+        self.hits.clear();
+        for link in scene.region.links_of(scene.robot, body) {
+            self.line.cast(scene.robot, scene.kinematics, link, &start, &direction, &mut self.hits);
+        }
+        best_first(&mut self.hits);
+        self.hits.first().copied().filter(|hit| hit.pushing)
+    }
+
+    /// The same, or on a body behind whose joints feel what the wrench would cause, but for `limit`.
+    fn hit_behind(
+        &mut self,
+        scene: Scene,
+        rows: &TorqueRows,
+        body: usize,
+        wrench: &WrenchEstimate,
+        limit: f64,
+    ) -> Option<Candidate> {
+        let hit = self.hit_on(scene, body, wrench);
+        if hit.is_some() {
+            return hit;
+        }
+        let robot = scene.robot;
+        let agrees = |joint: usize| {
+            robot.velocity_range(joint).all(|k| {
+                (wrench.torque_on(&rows.axes[k]) - rows.torque[k]).abs() <= limit.max(SILENT) * rows.tolerance[k]
+            })
+        };
+        let behind = |other: usize| {
+            let mut chain = robot.chain(other).iter().skip_while(|joint| **joint != body).skip(1).peekable();
+            chain.peek().is_some() && chain.all(|joint| scene.region.joints[*joint] && agrees(*joint))
+        };
+        let mut best: Option<Candidate> = None;
+        for other in body + 1..robot.body_count() {
+            if behind(other) {
+                let hit = self.hit_on(scene, other, wrench);
+                best = best.into_iter().chain(hit).min_by(|a, b| a.distance.total_cmp(&b.distance));
+            }
+        }
+        best
+    }
+}
+
+/// The first joint on the way from the base to `tip` that contradicts the total wrench of the joints before it.
+fn first_unexplained(scene: Scene, rows: &TorqueRows, tip: usize) -> Option<usize> {
+    let Scene { robot, region, .. } = scene;
+    let mut wrench_rows = WrenchRows::new();
+    rows.push_root(&mut wrench_rows);
+    let mut total: Option<WrenchEstimate> = None;
+    for joint in region.chain(robot, tip) {
+        if total.is_none() && wrench_rows.count >= 6 {
+            total = Some(WrenchEstimate::from_rows(wrench_rows.clone(), Vector3::zeros())).filter(|estimate| estimate.rank == 6);
+        }
+        match &total {
+            None => rows.push_joint(robot, joint, &mut wrench_rows),
+            Some(total) => {
+                let explained = |k: usize| {
+                    (total.torque_on(&rows.axes[k]) - rows.torque[k]).abs() <= SILENT * rows.tolerance[k]
+                };
+                if !robot.velocity_range(joint).all(explained) {
+                    return Some(joint);
+                }
+            }
+        }
+    }
+    None
+}
