@@ -23,12 +23,12 @@ NAMES: dict[Method, str] = {
 }
 BASELINE = "pseudoinverse*"
 NOTES = (
-    "Exact, 1 cm, 25 cm: shares of scenes whose every contact has an estimate of its own that near; the",
-    "estimate is the point, or the first candidate where the point is open. Candidate: a candidate within 1 cm",
-    "of every contact. Claimed: all said to be located; false: some claim is more than 1 cm from every contact;",
-    "off: the worst claim's distance. Links: just the links touched are named. Rank deficit: of the true",
-    "contacts, by NumPy.",
-    "* The paper's steps (28), (26) and 4 in NumPy, told the links truly touched, which the others must find.",
+    "Exact, 1 cm, 25 cm: shares of scenes whose every contact has an estimate of its own that near.",
+    "The estimate is the point, or the first candidate where the point is open. Candidate: every",
+    "contact has a candidate within 1 cm. Links: just the links touched are named. Claimed: all are",
+    "said to be located; false: some claim is more than 1 cm from every contact; off: the worst",
+    "claim's distance. Rank deficit: of the true contacts, by NumPy.",
+    "* The paper's steps (28), (26) and 4 in NumPy, told the links touched; the others must find them.",
 )
 
 
