@@ -31,7 +31,7 @@ def draw_pairs(figure: Figure, study: Study) -> None:
     panels = (
         ("Joint torques", study.run("pairs", "torques")),
         ("Joint torques and nine sensors", study.run("pairs", "both")),
-        ("The paper's steps, told the true links", study.baseline("pairs")),
+        ("Paper's steps, links given*", study.baseline("pairs")),
     )
     axes = figure.subplots(1, 3, sharey=True)
     for each, (title, run) in zip(axes, panels, strict=True):
@@ -46,7 +46,7 @@ def draw_pairs(figure: Figure, study: Study) -> None:
         loc="outside lower center",
         ncols=len(BINS),
         frameon=False,
-        title="worse of the two contacts: distance from its point to the estimate",
+        title="worse of the two contacts: distance from its point to the estimate (* told which links)",
     )
 
 
@@ -87,7 +87,7 @@ def draw_fives(figure: Figure, study: Study) -> None:
             errors = [verdict.error for verdict in run.verdicts if verdict.links[-1] == link]
             _steps(each, errors, colour, link)
         baseline = [verdict.error for verdict in study.baseline("fives").verdicts]
-        _steps(each, baseline, "0.45", "the paper's steps,\ntold the true links", ls=(0, (4, 2)))
+        _steps(each, baseline, "0.45", "paper's steps,\nlinks given", ls=(0, (4, 2)))
         deficits = ", ".join(f"{deficit}" for deficit in by_deficit(run.verdicts))
         each.set_title(f"{title}: {len(run.verdicts):,} scenes, rank deficit {deficits}", weight="bold")
         each.set_xscale("log")
@@ -97,7 +97,7 @@ def draw_fives(figure: Figure, study: Study) -> None:
         each.text(0.013, 0.02, "1 cm", color=TEXT, fontsize=8.5)
         each.set_xlabel("worst of the five distances from point to estimate [m]")
     axes[0].set_ylabel("share of scenes within")
-    axes[1].legend(frameon=False, fontsize=9, title="fifth contact on", loc="center right")
+    axes[1].legend(frameon=False, fontsize=9, title="fifth contact on", loc="center")
 
 
 def _steps(axes: Any, errors: Sequence[float], colour: str, label: str, **style: Any) -> None:

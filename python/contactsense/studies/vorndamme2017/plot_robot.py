@@ -45,6 +45,9 @@ def draw_robot(figure: Figure, study: Study) -> None:
     for each, (title, azimuth) in zip(axes, VIEWS, strict=True):
         _draw_view(each, study.robot, q, shown, azimuth)
         each.set_title(title, color=TEXT, loc="center")
+    low, high = (pick(each.get_ylim()[i] for each in axes) for i, pick in ((0, min), (1, max)))
+    for each in axes:
+        each.set_ylim(low, high)
     handles = [
         axes[0].plot([], [], "o", ms=6, color=colour, label=f"{kind}: {kinds.count(kind):,}")[0]
         for kind, colour in COLOURS.items()

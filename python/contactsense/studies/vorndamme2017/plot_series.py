@@ -44,7 +44,7 @@ def draw_series(figure: Figure, study: Study) -> None:
         _band(spread, milliseconds, along, COLOURS[method])
     spread.plot(milliseconds, one.force @ _direction(one) / amplitude, color=TRUTH, lw=1.2, ls=(0, (4, 2)))
     spread.set_ylabel("force found / greatest true force")
-    spread.set_title(f"{len(felt)} hits that a sensor feels: median, all", weight="bold")
+    spread.set_title(f"{len(felt)} hits that a sensor feels: median, 90 %", weight="bold")
     for method, signal in one.signals.items():
         _errors(point, milliseconds, signal.point_error[None], COLOURS[method])
         together = np.array([hit.signals[method].point_error for hit in felt])
@@ -75,7 +75,7 @@ def _direction(hit: Series) -> Any:
 
 def _band(axes: Any, time: Any, values: Any, colour: str) -> None:
     axes.plot(time, np.median(values, axis=0), color=colour, lw=2.0)
-    axes.fill_between(time, values.min(axis=0), values.max(axis=0), color=colour, alpha=0.2, lw=0)
+    axes.fill_between(time, *np.percentile(values, (5, 95), axis=0), color=colour, alpha=0.2, lw=0)
 
 
 def _errors(axes: Any, time: Any, errors: Any, colour: str) -> None:

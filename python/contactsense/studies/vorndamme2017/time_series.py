@@ -11,10 +11,10 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from ... import Contact, Robot
-from ...robot import description_file
 from ..sampling import FloatArray
 from .instruments import SENSOR_LINKS, Method, external_torque, external_wrenches, sensor_links
-from .isolation import ROBOT, Setting, make_isolator
+from .isolation import Setting, make_isolator
+from .physics import pinocchio_atlas
 from .scenes import Scene
 
 DURATION = 0.02  # [s]
@@ -136,15 +136,15 @@ def ideal_series(robot: Robot, scene: Scene, methods: Sequence[Method], gain: fl
 
 def inertial_wrenches(q: FloatArray, acceleration: FloatArray) -> FloatArray:
     """What accelerating the bodies behind each sensor takes, at rest `(9, 6)`: (16), (18) by Pinocchio."""
-    model = pin.buildModelFromUrdf(str(description_file(ROBOT)), pin.JointModelFreeFlyer())
-    model.gravity.setZero()
-    data = model.createData()
-    pin.rnea(model, data, q, np.zeros(model.nv), acceleration)
+    model = pinocchio_atlas()
+    moved, still = model.createData(), model.createData()
+    pin.rnea(model, moved, q, np.zeros(model.nv), acceleration)
+    pin.rnea(model, still, q, np.zeros(model.nv), np.zeros(model.nv))
     wrenches = []
     for link in SENSOR_LINKS:
         joint = model.frames[model.getBodyId(link)].parentJoint
-        rotation = data.oMi[joint].rotation
-        wrenches.append([*(rotation @ data.f[joint].linear), *(rotation @ data.f[joint].angular)])
+        rotation, wrench = moved.oMi[joint].rotation, moved.f[joint] - still.f[joint]
+        wrenches.append([*(rotation @ wrench.linear), *(rotation @ wrench.angular)])
     return np.array(wrenches)
 
 
