@@ -25,17 +25,12 @@ from contactsense.studies.vorndamme2017 import (
     singles,
     standing_pose,
 )
+from contactsense.studies.vorndamme2017.hits import ideal_series, scaled
 from contactsense.studies.vorndamme2017.isolation import Setting, Task, run_tasks
 from contactsense.studies.vorndamme2017.judge import Answer, Verdict, assign, judge_answers
 from contactsense.studies.vorndamme2017.score import by_deficit, score
 from contactsense.studies.vorndamme2017.study import matched_setting
-from contactsense.studies.vorndamme2017.time_series import (
-    GAIN,
-    filtered_half_sine,
-    half_sine,
-    ideal_series,
-    scaled,
-)
+from contactsense.studies.vorndamme2017.time_series import GAIN, filtered_half_sine, half_sine
 
 EXACT = 1e-9  # [m]
 

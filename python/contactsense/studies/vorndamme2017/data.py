@@ -23,9 +23,14 @@ def as_data(study: Study) -> dict[str, Any]:
             "options": asdict(study.options),
             "runs": [_run_data(run) for run in study.runs],
             "hits": [
-                {"amplitude": amplitude, "method": method, **series_figures(series, method)}
-                for amplitude, series in study.series.items()
-                for method in series[0].signals
+                {
+                    "amplitude": hits.amplitude,
+                    "simulated": hits.simulated,
+                    "method": method,
+                    **series_figures(hits.series, method),
+                }
+                for hits in study.hits
+                for method in hits.series[0].signals
             ],
             "timings": [asdict(timing) for timing in study.timings],
         }

@@ -49,15 +49,19 @@ def make_isolator(robot: Robot, setting: Setting) -> ContactIsolator:
     """The isolator for a setting, with the sensors of its method."""
     if setting.method == "torques":
         return ContactIsolator(robot, torque_threshold=setting.torque_threshold)
-    from ... import ForceTorqueSensor
-
-    sensors = [ForceTorqueSensor(link, link) for link in sensor_links(setting.method)]
     return ContactIsolator(
         robot,
-        sensors=sensors,
+        sensors=make_sensors(setting.method),
         torque_threshold=setting.torque_threshold,
         wrench_threshold=setting.wrench_threshold,
     )
+
+
+def make_sensors(method: Method) -> list[ForceTorqueSensor]:
+    """The sensors of a method, each in its link's frame and named after it."""
+    from ... import ForceTorqueSensor
+
+    return [ForceTorqueSensor(link, link) for link in sensor_links(method)]
 
 
 def run_task(task: Task) -> list[Verdict]:

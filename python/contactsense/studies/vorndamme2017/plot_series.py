@@ -22,7 +22,7 @@ LABELS: dict[Method, str] = {
 
 def draw_series(figure: Figure, study: Study) -> None:
     """Left: one hit's force and point error; right: the point errors of all hits that sensors feel."""
-    amplitude, hits = next(iter(study.series.items()))
+    amplitude, hits = study.hits[0].amplitude, study.hits[0].series
     felt = [hit for hit in hits if _sensed(study, hit)] or hits
     one = next((hit for hit in felt if hit.scene.links[0] not in ("utorso", "head")), felt[0])
     axes = figure.subplots(2, 2, sharex=True)

@@ -9,15 +9,17 @@ import numpy as np
 
 from ... import InputError, Robot
 from ..sampling import CONE
+from .hits import ideal_series, scaled, simulated_series
 from .instruments import METHODS, Method, external_torque, external_wrenches
 from .isolation import ROBOT, THRESHOLD, Setting, Task, run_tasks
 from .judge import Verdict
 from .scenes import Scene, fives, pairs, singles
-from .time_series import Series, ideal_series, scaled
+from .time_series import Series
 from .timing import Timing, measure
 
 TIMED = 1000  # scenes
 HITS = 100  # scenes of the time series
+SIMULATED_HITS = 20
 AMPLITUDES = (1.0, 50.0)  # [N]
 SIGMAS = 3.0  # threshold over noise
 
@@ -55,13 +57,22 @@ class Run:
 
 
 @dataclass(frozen=True)
+class Hits:
+    """Hits of one size over time."""
+
+    amplitude: float  # [N]
+    simulated: bool  # on a moving robot, or with the errors of (6) and (10)
+    series: list[Series]
+
+
+@dataclass(frozen=True)
 class Study:
     """All runs."""
 
     options: Options
     robot: Robot
     runs: list[Run]
-    series: dict[float, list[Series]]  # by amplitude [N]
+    hits: list[Hits]
     timings: list[Timing] = field(default_factory=list)
 
     def run(self, name: str, method: Method, noise: float = 0.0, *, matched: bool = False) -> Run:
@@ -109,13 +120,13 @@ def run(
         Run(name, task.setting, list(task.scenes), found)
         for (name, task), found in zip(tasks, verdicts, strict=True)
     ]
-    series = _series(robot, sets["singles"][:HITS], over_time, progress)
+    hits = _hits(robot, sets["singles"][:HITS], over_time, progress)
     timings: list[Timing] = []
     timed = [(sets[name][:TIMED], method) for method in over_time for name in ("singles", "pairs", "fives")]
     for number, (scenes, method) in enumerate(timed, 1):
         timings.append(measure(robot, scenes, method))
         progress("timing", number, len(timed))
-    return Study(options, robot, runs, series, timings)
+    return Study(options, robot, runs, hits, timings)
 
 
 def _scenes(robot: Robot, options: Options) -> dict[str, list[Scene]]:
@@ -168,15 +179,21 @@ def _usual(values: np.ndarray) -> np.ndarray:
     return usual
 
 
-def _series(
+def _hits(
     robot: Robot,
     scenes: Sequence[Scene],
     methods: Sequence[Method],
     progress: Callable[[str, int, int], None],
-) -> dict[float, list[Series]]:
-    series: dict[float, list[Series]] = {amplitude: [] for amplitude in AMPLITUDES}
-    for number, scene in enumerate(scenes, 1):
-        for amplitude in AMPLITUDES:
-            series[amplitude].append(ideal_series(robot, scaled(scene, amplitude), methods))
-        progress("hits over time", number, len(scenes))
-    return series
+) -> list[Hits]:
+    sets = [(amplitude, simulated) for simulated in (False, True) for amplitude in AMPLITUDES]
+    found = []
+    for number, (amplitude, simulated) in enumerate(sets, 1):
+        chosen = [scaled(scene, amplitude) for scene in scenes]
+        if simulated:
+            measured = [method for method in methods if method != "sensors"]
+            series = [simulated_series(robot, scene, measured) for scene in chosen[:SIMULATED_HITS]]
+        else:
+            series = [ideal_series(robot, scene, methods) for scene in chosen]
+        found.append(Hits(amplitude, simulated, series))
+        progress("hits over time", number, len(sets))
+    return found
