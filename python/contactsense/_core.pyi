@@ -15,7 +15,9 @@ __all__ = [
     "ContactIsolator",
     "ContactMonitor",
     "ContactReport",
+    "ForceTorqueSensor",
     "Isolation",
+    "LoadCompensator",
     "MomentumObserver",
     "RayHits",
     "Robot",
@@ -138,6 +140,33 @@ class MomentumObserver:
     def external_torque(self) -> NDArray[np.float64]: ...
     @property
     def acceleration(self) -> NDArray[np.float64]: ...
+
+@final
+class ForceTorqueSensor:
+    def __new__(
+        cls,
+        name: str,
+        link: str,
+        *,
+        pose: ArrayLike | None = None,
+        convention: Literal["load", "support"] = "load",
+    ) -> Self: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def link(self) -> str: ...
+    @property
+    def pose(self) -> NDArray[np.float64]: ...
+    @property
+    def convention(self) -> Literal["load", "support"]: ...
+    def __hash__(self) -> int: ...
+
+@final
+class LoadCompensator:
+    def __new__(cls, robot: Robot, sensors: Iterable[ForceTorqueSensor]) -> Self: ...
+    def update(
+        self, q: ArrayLike, v: ArrayLike, a: ArrayLike, wrenches: ArrayLike
+    ) -> NDArray[np.float64]: ...
 
 @final
 class ContactIsolator:

@@ -1,0 +1,11 @@
+//! Force/torque sensors along the structure (Vorndamme 2017, section III).
+
+mod distal_parts;
+mod force_torque_sensor;
+mod load_compensator;
+mod sensor_tree;
+
+pub use force_torque_sensor::{Convention, ForceTorqueSensor};
+pub(crate) use load_compensator::check_readings;
+pub use load_compensator::LoadCompensator;
+pub use sensor_tree::SensorTree;
