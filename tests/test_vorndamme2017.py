@@ -12,7 +12,7 @@ import pytest
 
 import contactsense as cs
 from contactsense.cli.app import run as command
-from contactsense.studies.sampling import blocked
+from contactsense.studies.sampling import Touch, blocked
 from contactsense.studies.vorndamme2017 import (
     SENSOR_LINKS,
     Scene,
@@ -26,8 +26,9 @@ from contactsense.studies.vorndamme2017 import (
     standing_pose,
 )
 from contactsense.studies.vorndamme2017.hits import ideal_series, scaled
-from contactsense.studies.vorndamme2017.isolation import Setting, Task, run_tasks
+from contactsense.studies.vorndamme2017.isolation import Setting, Task, make_sensors, run_tasks
 from contactsense.studies.vorndamme2017.judge import Answer, Verdict, assign, judge_answers
+from contactsense.studies.vorndamme2017.physics import simulate
 from contactsense.studies.vorndamme2017.score import by_deficit, score
 from contactsense.studies.vorndamme2017.study import matched_setting
 from contactsense.studies.vorndamme2017.time_series import GAIN, filtered_half_sine, half_sine
@@ -183,6 +184,36 @@ def test_the_filter_answers_as_its_dynamics_say() -> None:
         middle = 0.5 * (force[k] + force[k + 1])
         r[k + 1] = middle + (r[k] - middle) * np.exp(-GAIN * step)
     np.testing.assert_allclose(filtered_half_sine(fine), r, atol=1e-7)
+
+
+def test_simulated_readings_are_weight_inertia_and_the_hit(robot: cs.Robot) -> None:
+    """Pinocchio's joint wrenches against the library's compensation, with the true acceleration."""
+    (scene,) = (scene for scene in singles(robot, 40, 423)[:1])
+    record = simulate(scaled(scene, 50.0), lambda time: float(half_sine(np.array(time))), speed=0.5)
+    compensator = cs.LoadCompensator(robot, make_sensors("both"))
+    for row in range(0, len(record.time), 7):
+        told = compensator.update(record.q[row], record.v[row], record.a[row], record.readings[row])
+        hit = Touch(scene.links[0], record.q[row], record.point[row], record.force[row])
+        np.testing.assert_allclose(told, external_wrenches(robot, Scene(record.q[row], [hit])), atol=1e-9)
+
+
+def test_the_acceleration_errs_as_equation_10_says(robot: cs.Robot) -> None:
+    """The error that the ideal hits assume, against observer and simulation."""
+    (scene,) = singles(robot, 1, 424)
+    record = simulate(scaled(scene, 50.0), lambda time: float(half_sine(np.array(time))))
+    observer = cs.MomentumObserver(robot, dt=0.001, gain=GAIN)
+    true = half_sine(record.time)
+    seen = filtered_half_sine(np.clip(record.time, 0.0, None))
+    for row, (q, v, tau) in enumerate(zip(record.q, record.v, record.tau, strict=True)):
+        observer.update(q, v, tau)
+        pulse = (
+            robot.jacobian(q, scene.links[0], record.point[row])[:3].T @ scaled(scene, 50.0).touches[0].force
+        )
+        reach = np.linalg.solve(robot.mass_matrix(q), pulse)
+        expected = (true[row] - seen[row]) * reach
+        np.testing.assert_allclose(
+            record.a[row] - observer.acceleration, expected, atol=0.02 * np.abs(reach).max()
+        )
 
 
 def test_single_contacts_are_located_from_torques(robot: cs.Robot) -> None:

@@ -12,7 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from ... import ContactIsolator, Robot
+from ... import ContactIsolator, ForceTorqueSensor, Robot
 from .information import rank_deficit
 from .instruments import Method, observed, sensor_links
 from .judge import Verdict, judge, judge_answers
@@ -59,8 +59,6 @@ def make_isolator(robot: Robot, setting: Setting) -> ContactIsolator:
 
 def make_sensors(method: Method) -> list[ForceTorqueSensor]:
     """The sensors of a method, each in its link's frame and named after it."""
-    from ... import ForceTorqueSensor
-
     return [ForceTorqueSensor(link, link) for link in sensor_links(method)]
 
 

@@ -29,6 +29,7 @@ class Recording:
     time: FloatArray  # (n,) [s]
     q: FloatArray  # (n, nq)
     v: FloatArray  # (n, nv)
+    a: FloatArray  # (n, nv)
     tau: FloatArray  # (n, nv), nil for the base
     readings: FloatArray  # (n, 9, 6) of the sensors: what the distal side exerts, sensor axes
     point: FloatArray  # (n, 3) the point hit
@@ -88,7 +89,7 @@ def simulate(
         readings = [-data.f[model.frames[model.getBodyId(link)].parentJoint].vector for link in SENSOR_LINKS]
         pin.forwardKinematics(model, data, q)
         point, force = data.oMi[joint].act(local), pulse(time) * touch.force
-        rows.append((time, q, v, motors(q, v), np.array(readings), point, force))
+        rows.append((time, q, v, a, motors(q, v), np.array(readings), point, force))
         h = STEP / SUBSTEPS
         for step in range(SUBSTEPS):
             # Midpoint rule.
