@@ -90,7 +90,7 @@ def _draw_view(
         if points:
             spots = np.array(points)
             axes.scatter(spots @ across, spots @ up, s=7, color=colour, linewidths=0, zorder=3)
-    axes.set_aspect("equal")
+    axes.set_aspect("equal", adjustable="datalim")
     axes.autoscale_view()
     axes.set_axis_off()
 

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from ...demo.style import DETECTED, ESTIMATE, GREY, NAMED, TEXT, TRUTH
+from ...demo.style import DETECTED, ESTIMATE, GREY, NAMED, TRUTH
 from .instruments import SENSOR_LINKS, Method, carries
-from .study import Study
-from .time_series import DURATION, Series
+from .study import Hits, Study
+from .time_series import DURATION, Series, half_sine
 
 COLOURS: dict[Method, str] = {"torques": ESTIMATE, "both": DETECTED, "sensors": NAMED}
 LABELS: dict[Method, str] = {
@@ -18,68 +19,68 @@ LABELS: dict[Method, str] = {
     "both": "joint torques and sensors",
     "sensors": "sensors alone",
 }
+FLOOR = 1e-17  # [m]
+SHOWN = (-1.0, 36.0)  # [ms]
 
 
 def draw_series(figure: Figure, study: Study) -> None:
-    """Left: one hit's force and point error; right: the point errors of all hits that sensors feel."""
-    amplitude, hits = study.hits[0].amplitude, study.hits[0].series
-    felt = [hit for hit in hits if _sensed(study, hit)] or hits
+    """One hit, all hits with ideal errors, and simulated hits: force above, error of the point below."""
+    ideal = study.hits[0]
+    simulated = [hits for hits in study.hits if hits.simulated][-1]
+    felt = _felt(study, ideal)
     one = next((hit for hit in felt if hit.scene.links[0] not in ("utorso", "head")), felt[0])
-    axes = figure.subplots(2, 2, sharex=True)
-    force, point = axes[:, 0]
-    axis = int(np.argmax(np.abs(one.scene.touches[0].force)))
-    milliseconds = 1e3 * one.time
-    force.plot(milliseconds, one.force[:, axis], color=TRUTH, lw=1.2, ls=(0, (4, 2)), label="true")
-    for method, signal in one.signals.items():
-        force.plot(
-            milliseconds, signal.force[:, axis], "o-", ms=3, color=COLOURS[method], label=LABELS[method]
-        )
-    force.set_ylabel(f"{'xyz'[axis]} component of the force [N]")
-    force.set_title(f"A hit of {amplitude:g} N on {one.scene.links[0]}", weight="bold")
-    force.legend(frameon=False, fontsize=9)
-    spread = axes[0, 1]
-    for method in one.signals:
-        peaks = np.array([np.nan_to_num(hit.signals[method].force) for hit in felt])
-        along = np.einsum("ijk,ik->ij", peaks, np.array([_direction(hit) for hit in felt])) / amplitude
-        _band(spread, milliseconds, along, COLOURS[method])
-    spread.plot(milliseconds, one.force @ _direction(one) / amplitude, color=TRUTH, lw=1.2, ls=(0, (4, 2)))
-    spread.set_ylabel("force found / greatest true force")
-    spread.set_title(f"{len(felt)} hits that a sensor feels: median, 90 %", weight="bold")
-    for method, signal in one.signals.items():
-        _errors(point, milliseconds, signal.point_error[None], COLOURS[method])
-        together = np.array([hit.signals[method].point_error for hit in felt])
-        _errors(axes[1, 1], milliseconds, together, COLOURS[method])
-    for each in axes[1]:
-        each.set_yscale("log")
-        each.set_ylim(1e-17, 2.0)
-        each.set_xlabel("time since the hit began [ms]")
-        each.set_ylabel("point to estimate [m]")
-    for each in axes.ravel():
-        each.axvspan(0.0, 1e3 * DURATION, color="0.95", lw=0, zorder=0)
-        each.set_xlim(-0.5, milliseconds[-1])
-    for each in axes[0]:
-        each.axhline(0.0, color=GREY, lw=0.6)
-    axes[1, 1].text(
-        0.99, 0.96, "gaps: no point claimed", transform=axes[1, 1].transAxes, ha="right", va="top", color=TEXT
+    moving = _felt(study, simulated)
+    columns = (
+        (f"A hit of {ideal.amplitude:g} N on {one.scene.links[0]}", ideal.amplitude, [one]),
+        (f"{len(felt)} hits, errors of (6) and (10)", ideal.amplitude, felt),
+        (f"{len(moving)} simulated hits, robot in motion", simulated.amplitude, moving),
+    )
+    axes = figure.subplots(2, 3, sharex=True, sharey="row")
+    for (force, point), (title, amplitude, hits) in zip(axes.T, columns, strict=True):
+        time = 1e3 * hits[0].time
+        for method in hits[0].signals:
+            _forces(force, time, hits, method, amplitude)
+            _errors(point, time, np.array([hit.signals[method].point_error for hit in hits]), COLOURS[method])
+        fine = np.linspace(*SHOWN, 400)
+        force.plot(fine, half_sine(1e-3 * fine), color=TRUTH, lw=1.3, ls=(0, (4, 2)), label="true", zorder=4)
+        force.axhline(0.0, color=GREY, lw=0.6)
+        force.set_title(title, weight="bold")
+        point.set_xlabel("time since the hit began [ms]")
+        for each in (force, point):
+            each.axvspan(0.0, 1e3 * DURATION, color="0.95", lw=0, zorder=0)
+            each.set_xlim(*SHOWN)
+    axes[0, 0].set_ylabel("force found / greatest true force")
+    axes[1, 0].set_ylabel("true point to claimed point [m]")
+    axes[1, 0].set_yscale("log")
+    axes[1, 0].set_ylim(FLOOR / 2, 5.0)
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(
+        handles,
+        labels,
+        loc="outside lower center",
+        ncols=len(labels),
+        frameon=False,
+        title="medians, and 90 % of the hits shaded; below, every sample with a claimed point is a dot",
     )
 
 
-def _sensed(study: Study, hit: Series) -> bool:
-    return any(carries(study.robot, sensor, hit.scene.links[0]) for sensor in SENSOR_LINKS)
+def _felt(study: Study, hits: Hits) -> list[Series]:
+    """Hits that a sensor feels, or all if there are none."""
+
+    def sensed(hit: Series) -> bool:
+        return any(carries(study.robot, sensor, hit.scene.links[0]) for sensor in SENSOR_LINKS)
+
+    return [hit for hit in hits.series if sensed(hit)] or hits.series
 
 
-def _direction(hit: Series) -> Any:
-    force = hit.scene.touches[0].force
-    return force / np.linalg.norm(force)
-
-
-def _band(axes: Any, time: Any, values: Any, colour: str) -> None:
-    axes.plot(time, np.median(values, axis=0), color=colour, lw=2.0)
-    axes.fill_between(time, *np.percentile(values, (5, 95), axis=0), color=colour, alpha=0.2, lw=0)
+def _forces(axes: Any, time: Any, hits: Sequence[Series], method: Method, amplitude: float) -> None:
+    along = np.array([np.nan_to_num(hit.signals[method].force) @ hit.direction for hit in hits]) / amplitude
+    axes.plot(time, np.median(along, axis=0), color=COLOURS[method], lw=2.0, label=LABELS[method])
+    low, high = np.percentile(along, (5, 95), axis=0)
+    axes.fill_between(time, low, high, color=COLOURS[method], alpha=0.2, lw=0)
 
 
 def _errors(axes: Any, time: Any, errors: Any, colour: str) -> None:
     rows, columns = np.nonzero(np.isfinite(errors))
-    axes.plot(
-        time[columns], np.maximum(errors[rows, columns], 1e-17), "o", ms=3, color=colour, alpha=0.7, mew=0
-    )
+    shown = np.maximum(errors[rows, columns], FLOOR)
+    axes.plot(time[columns], shown, "o", ms=3, color=colour, alpha=0.6, mew=0)

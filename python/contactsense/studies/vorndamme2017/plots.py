@@ -31,7 +31,7 @@ PICTURES: dict[str, tuple[tuple[float, float], Callable[[Figure, Study], None]]]
     "pairs_by_link.png": ((15.5, 8.6), draw_matrix),
     "pairs_by_rank.png": ((12.5, 4.6), draw_pairs),
     "fives.png": ((11.0, 4.6), draw_fives),
-    "hit_over_time.png": ((11.5, 6.4), draw_series),
+    "hit_over_time.png": ((13.0, 6.6), draw_series),
 }
 
 

@@ -43,7 +43,7 @@ class Series:
 
     def delay(self, method: Method) -> float:
         """Shift [s] of the half sine that fits the force found best; NaN if nothing is found."""
-        found = np.nan_to_num(self.signals[method].force) @ self._direction
+        found = np.nan_to_num(self.signals[method].force) @ self.direction
         if not found.any():
             return np.nan
         shifted = half_sine(self.time[None] - SHIFTS[:, None])
@@ -52,7 +52,7 @@ class Series:
 
     def peak_delay(self, method: Method) -> float:
         """From the true peak to the greatest force found [s]."""
-        found = np.nan_to_num(self.signals[method].force) @ self._direction
+        found = np.nan_to_num(self.signals[method].force) @ self.direction
         return float(self.time[np.argmax(found)] - DURATION / 2) if found.any() else np.nan
 
     def first_right(self, method: Method) -> int | None:
@@ -71,7 +71,8 @@ class Series:
         return float(np.nanmax(errors)) if np.isfinite(errors).any() else np.nan
 
     @cached_property
-    def _direction(self) -> FloatArray:
+    def direction(self) -> FloatArray:
+        """Of the force, a unit vector `(3,)`."""
         force = self.scene.touches[0].force
         return force / np.linalg.norm(force)
 

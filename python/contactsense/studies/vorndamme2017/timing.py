@@ -24,6 +24,15 @@ PAPER: dict[tuple[int, Method], tuple[float, float]] = {
     (2, "both"): (280e-6, 750e-6),
     (5, "both"): (520e-6, 920e-6),
 }
+# What this library aims at, mean and max [s], so that a contact costs a small part of a 1 kHz tick.
+GOALS: dict[tuple[int, Method], tuple[float, float]] = {
+    (1, "torques"): (15e-6, 60e-6),
+    (2, "torques"): (60e-6, 300e-6),
+    (5, "torques"): (150e-6, 1000e-6),
+    (1, "both"): (20e-6, 60e-6),
+    (2, "both"): (30e-6, 100e-6),
+    (5, "both"): (60e-6, 200e-6),
+}
 
 
 @dataclass(frozen=True)
