@@ -16,11 +16,6 @@ impl TipSearch {
         Self { felt_behind: vec![false; count], tips: Vec::with_capacity(count) }
     }
 
-    /// No robot: a placeholder that costs no memory.
-    pub(crate) fn empty() -> Self {
-        Self { felt_behind: Vec::new(), tips: Vec::new() }
-    }
-
     /// The tips, farthest from the base first; `over(k)` tells whether velocity variable k is over its threshold.
     pub fn find(&mut self, robot: &Robot, over: impl Fn(usize) -> bool) -> &[usize] {
         self.felt_behind.fill(false);

@@ -177,29 +177,23 @@ impl ContactIsolator {
 
     /// Contacts that were found together, farthest from the base first.
     fn report_several(&mut self, kinematics: &Kinematics) {
-        let mut several = std::mem::replace(&mut self.several, SeveralContacts::empty());
-        for found in &several.found {
-            self.report_found(kinematics, found, true);
+        for index in 0..self.several.found.len() {
+            let found = self.several.found[index].clone();
+            self.report_found(kinematics, &found, true);
         }
         for side in [1, 0] {
-            if let Some(best) = several.solutions.first() {
-                let found = &best.contacts[side];
-                let agree = several
-                    .solutions
-                    .iter()
-                    .all(|other| (other.contacts[side].hit.point - found.hit.point).norm() < SAME_POINT);
-                self.report_found(kinematics, found, agree && several.verified);
-                let hits = several.solutions[1..].iter().map(|other| other.contacts[side].hit);
-                if !agree {
-                    self.isolation.candidates.extend(hits);
-                }
-                if let Some(contact) = self.isolation.contacts.last_mut() {
-                    contact.candidates.end = self.isolation.candidates.len();
-                }
+            let Some(best) = self.several.solutions.first() else { break };
+            let found = best.contacts[side].clone();
+            let others = self.several.solutions.iter().skip(1).map(|other| other.contacts[side].hit);
+            let agree = others.clone().all(|hit| (hit.point - found.hit.point).norm() < SAME_POINT);
+            let determined = agree && self.several.verified && !self.several.open;
+            if !agree {
+                self.isolation.candidates.push(found.hit);
+                self.isolation.candidates.extend(others);
             }
+            self.report_found(kinematics, &found, determined);
         }
-        self.isolation.rank_deficit = several.rank_deficit;
-        std::mem::swap(&mut self.several, &mut several);
+        self.isolation.rank_deficit = self.several.rank_deficit;
     }
 
     fn report_found(&mut self, kinematics: &Kinematics, found: &Found, determined: bool) {
@@ -215,8 +209,10 @@ impl ContactIsolator {
         explain_force(&robot, kinematics, body, &at, &wrench.force, &mut self.unexplained);
         let point_std = self.spread(kinematics, wrench, hit);
         let size = robot.links[hit.link].surface.as_ref().map_or(0.0, |surface| surface.bounding_sphere().1);
-        let start = self.isolation.candidates.len();
-        self.isolation.candidates.push(*hit);
+        let candidates = self.isolation.contacts.last().map_or(0, |last| last.candidates.end);
+        if self.isolation.candidates.len() == candidates {
+            self.isolation.candidates.push(*hit);
+        }
         let pose = kinematics.link_pose(&robot, hit.link);
         let mut contact = Contact::unlocated(hit.link);
         contact.point = hit.point;
@@ -225,7 +221,7 @@ impl ContactIsolator {
         contact.force = wrench.force;
         contact.wrench = stack(&wrench.force, &(hit.point - pose.translation).cross(&wrench.force));
         contact.point_std = point_std;
-        contact.candidates = start..start + 1;
+        contact.candidates = candidates..self.isolation.candidates.len();
         contact.located = determined && self.pushing && SIGNIFICANCE * point_std < size;
         self.isolation.contacts.push(contact);
         self.isolation.link_candidates.push(hit.link);

@@ -20,11 +20,6 @@ impl LineCast {
         Self { hits: Vec::with_capacity(HITS_PER_LINK) }
     }
 
-    /// A placeholder that costs no memory.
-    pub fn empty() -> Self {
-        Self { hits: Vec::new() }
-    }
-
     /// Appends all hits of the whole line with a link, up to the capacity of `candidates`.
     pub fn cast(
         &mut self,

@@ -6,12 +6,12 @@
 use nalgebra::Vector3;
 
 use super::line::{best_first, LineCast};
-use super::open_part;
+use super::open_part::{close, close_near};
 use super::pair::{estimate_pair, Open, PairEstimate};
 use super::region::Region;
 use super::result::Candidate;
 use super::rows::{TorqueRows, WrenchRows};
-use super::surface_search::{steepness, SurfaceSearch};
+use super::surface_search::{steepness, SurfaceSearch, STARTS};
 use super::wrench::WrenchEstimate;
 use crate::detection::TipSearch;
 use crate::robot::{Kinematics, Robot, WORLD};
@@ -22,8 +22,10 @@ const EXACT: f64 = 1e-6;
 const SILENT: f64 = 1e-5;
 /// Root mean square of what a good solution leaves under noise [tolerances].
 const GOOD: f64 = 1.0;
+/// Misfit of a solution between samples of the surfaces, which is not exact.
+const INEXACT: f64 = f64::INFINITY;
 /// Solutions kept.
-const SOLUTIONS: usize = 8;
+const SOLUTIONS: usize = 16;
 /// Hits of one line that are looked at.
 const HITS: usize = 256;
 /// Rounds until the contact links stand still; ten, as in Vorndamme 2017.
@@ -61,6 +63,8 @@ pub(super) struct SeveralContacts {
     pub rank_deficit: usize,
     /// Whether more conditions were met than unknowns were fitted.
     pub verified: bool,
+    /// Whether more components are open than two forces on lines have conditions: the solutions are samples.
+    pub open: bool,
     max_contacts: usize,
     tips: TipSearch,
     line: LineCast,
@@ -75,6 +79,7 @@ impl SeveralContacts {
             solutions: Vec::with_capacity(SOLUTIONS + 1),
             rank_deficit: 0,
             verified: false,
+            open: false,
             max_contacts,
             tips: TipSearch::new(robot),
             line: LineCast::new(),
@@ -83,32 +88,18 @@ impl SeveralContacts {
         }
     }
 
-    /// No robot: a placeholder that costs no memory.
-    pub fn empty() -> Self {
-        Self {
-            found: Vec::new(),
-            solutions: Vec::new(),
-            rank_deficit: 0,
-            verified: false,
-            max_contacts: 0,
-            tips: TipSearch::empty(),
-            line: LineCast::empty(),
-            hits: Vec::new(),
-            search: SurfaceSearch::empty(),
-        }
-    }
-
     fn clear(&mut self) {
         self.found.clear();
         self.solutions.clear();
         self.rank_deficit = 0;
         self.verified = false;
+        self.open = false;
     }
 
     /// Contacts that explain the torques but for rounding. Uses up `rows`.
     pub fn solve_exactly(&mut self, scene: Scene, rows: &mut TorqueRows) -> bool {
         self.clear();
-        let Scene { robot, region, .. } = scene;
+        let Scene { robot, .. } = scene;
         while self.found.len() < self.max_contacts {
             let felt = |k: usize| rows.torque[k].abs() > SILENT * rows.tolerance[k];
             let tips = self.tips.find(robot, felt);
@@ -215,6 +206,7 @@ impl SeveralContacts {
             let Some(pair) = estimate_pair(scene.robot, scene.region, rows, bodies) else { return false };
             self.rank_deficit = pair.deficit;
             self.verified = pair.checks() > 0;
+            self.open = pair.deficit > 2;
             if pair.deficit > 0 {
                 self.close(scene, &pair, limit);
                 return !self.solutions.is_empty();
@@ -243,29 +235,42 @@ impl SeveralContacts {
     /// Closes a rank deficit by what is known of contacts.
     fn close(&mut self, scene: Scene, pair: &PairEstimate, limit: f64) {
         if pair.deficit <= 2 {
-            let (closed, count) = open_part::close(pair);
-            closed[..count].iter().for_each(|open| self.try_open(scene, pair, open, limit));
+            let (closed, count) = close(pair);
+            for open in &closed[..count] {
+                self.try_open(scene, pair, open, limit);
+            }
             return;
         }
         if pair.misfit(&pair.wrenches(&[0.0; 6])).is_nan() {
             return;
         }
-        // Taken out for the time, since each start needs the rest.
-        let mut search = std::mem::replace(&mut self.search, SurfaceSearch::empty());
-        search.search(scene, pair, |open| self.try_open(scene, pair, open, limit));
-        self.search = search;
+        self.search.search(scene, pair);
+        for rank in 0..STARTS {
+            let Some((places, start)) = self.search.start(scene, pair, rank) else { break };
+            let exact = close_near(pair, start).is_some_and(|open| self.try_open(scene, pair, &open, limit));
+            if !exact {
+                self.keep(pair.wrenches(&start), places, INEXACT);
+            }
+        }
+        let means = self.search.means.map(|mean| mean + scene.kinematics.origin);
+        let far = |solution: &Solution| {
+            (0..2).map(|i| (solution.contacts[i].hit.point - means[i]).norm_squared()).sum::<f64>()
+        };
+        if means[0].x.is_finite() {
+            self.solutions.sort_unstable_by(|a, b| far(a).total_cmp(&far(b)));
+        }
     }
 
-    fn try_open(&mut self, scene: Scene, pair: &PairEstimate, open: &Open, limit: f64) {
+    fn try_open(&mut self, scene: Scene, pair: &PairEstimate, open: &Open, limit: f64) -> bool {
         let wrenches = pair.wrenches(open);
         let misfit = pair.misfit(&wrenches);
         if !(misfit <= limit) {
-            return;
+            return false;
         }
         let hits = [0, 1].map(|i| self.hit_on(scene, pair.bodies[i], &wrenches[i]));
-        if let [Some(first), Some(second)] = hits {
-            self.keep(wrenches, [first, second], misfit);
-        }
+        let [Some(first), Some(second)] = hits else { return false };
+        self.keep(wrenches, [first, second], misfit);
+        true
     }
 
     /// Adds a solution in its place: those that push most squarely first.
