@@ -45,9 +45,7 @@ def draw_robot(figure: Figure, study: Study) -> None:
     for each, (title, azimuth) in zip(axes, VIEWS, strict=True):
         _draw_view(each, study.robot, q, shown, azimuth)
         each.set_title(title, color=TEXT, loc="center")
-    low, high = (pick(each.get_ylim()[i] for each in axes) for i, pick in ((0, min), (1, max)))
-    for each in axes:
-        each.set_ylim(low, high)
+    _share_scale(axes)
     handles = [
         axes[0].plot([], [], "o", ms=6, color=colour, label=f"{kind}: {kinds.count(kind):,}")[0]
         for kind, colour in COLOURS.items()
@@ -90,9 +88,21 @@ def _draw_view(
         if points:
             spots = np.array(points)
             axes.scatter(spots @ across, spots @ up, s=7, color=colour, linewidths=0, zorder=3)
-    axes.set_aspect("equal", adjustable="datalim")
     axes.autoscale_view()
     axes.set_axis_off()
+
+
+def _share_scale(axes: Any) -> None:
+    """Views of one size, each with the robot in its middle."""
+    width, height = (
+        max(high - low for low, high in ends)
+        for ends in ([each.get_xlim() for each in axes], [each.get_ylim() for each in axes])
+    )
+    for each in axes:
+        across, up = sum(each.get_xlim()) / 2, sum(each.get_ylim()) / 2
+        each.set_xlim(across - width / 2, across + width / 2)
+        each.set_ylim(up - height / 2, up + height / 2)
+        each.set_aspect("equal")
 
 
 def _split(
