@@ -78,8 +78,9 @@ def _noisy(study: Study) -> Iterable[Row]:
     for run in study.runs:
         if run.setting.noise:
             determined = [verdict for verdict in run.verdicts if verdict.rank_deficit == 0]
-            thresholds = "matched" if isinstance(run.setting.torque_threshold, tuple) else "default"
-            yield (f"{run.name}, {NAMES[run.setting.method]}", thresholds), score(determined)
+            matched = isinstance(run.setting.torque_threshold, tuple)
+            label = "" if matched else f"{run.name}, {NAMES[run.setting.method]}"
+            yield (label, "matched" if matched else "default"), score(determined)
 
 
 def _runs(study: Study, name: str) -> list[Run]:
@@ -190,7 +191,7 @@ def timing_table(study: Study) -> Table:
 def summary_table(study: Study) -> Table:
     """What can be told with which sensors, after Table II."""
     sheet = _sheet("What each set of sensors tells (ideal measurements)", ["", ""])
-    for column in ("determined", "links named", "isolated, 1 cm", "identified, 1 %", "false claims"):
+    for column in ("determined", "felt", "links named", "isolated, 1 cm", "identified, 1 %", "false claims"):
         sheet.add_column(column, justify="right")
     for method in METHODS:
         label = NAMES[method]
@@ -200,7 +201,7 @@ def summary_table(study: Study) -> Table:
             except KeyError:
                 continue
             determined = np.mean([each.rank_deficit == 0 for each in study.run(name, method).verdicts])
-            shares = (figures.links_right, figures.near, figures.identified, figures.wrong)
+            shares = (figures.detected, figures.links_right, figures.near, figures.identified, figures.wrong)
             sheet.add_row(label, name, percent(float(determined)), *map(percent, shares))
             label = ""
         sheet.add_section()

@@ -24,6 +24,7 @@ class Score:
     lost: float  # some contact has no estimate
     among_candidates: float  # every true point within 1 cm of a candidate
     identified: float  # every force within 1 %
+    detected: float  # some contact is reported
     links_right: float  # just the links touched are named
     located: float  # as many contacts are claimed as there are
     missed: float  # determined, but not all located
@@ -47,6 +48,7 @@ def score(verdicts: Sequence[Verdict]) -> Score:
         lost=share(lambda verdict: not np.isfinite(verdict.error)),
         among_candidates=share(lambda verdict: verdict.among_candidates),
         identified=share(lambda verdict: max(verdict.force_errors) <= 0.01),
+        detected=share(lambda verdict: bool(verdict.named)),
         links_right=share(lambda verdict: verdict.links_right),
         located=share(lambda verdict: verdict.all_located),
         missed=share(lambda verdict: verdict.rank_deficit == 0 and not verdict.all_located),
