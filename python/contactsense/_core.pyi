@@ -232,8 +232,11 @@ class ContactMonitor:
         robot: Robot,
         *,
         dt: float,
+        sensors: Iterable[ForceTorqueSensor] | None = None,
+        wanted_contacts: Iterable[str] | None = None,
         observer_gain: ArrayLike | None = None,
         torque_threshold: ArrayLike | None = None,
+        wrench_threshold: ArrayLike | None = None,
         bias_time_constant: float | None = None,
         bias_settle_time: float | None = None,
         hold_time: float | None = None,
@@ -241,7 +244,13 @@ class ContactMonitor:
         pushing: bool = True,
     ) -> Self: ...
     def update(
-        self, q: ArrayLike, v: ArrayLike, tau: ArrayLike, *, friction: ArrayLike | None = None
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        tau: ArrayLike,
+        wrenches: ArrayLike | None = None,
+        *,
+        friction: ArrayLike | None = None,
     ) -> ContactReport: ...
     def reset(self) -> None: ...
 
@@ -257,6 +266,14 @@ class ContactReport:
     def links(self) -> tuple[str, ...]: ...
     @property
     def external_torque(self) -> NDArray[np.float64]: ...
+    @property
+    def collision_torque(self) -> NDArray[np.float64]: ...
+    @property
+    def wrenches(self) -> NDArray[np.float64]: ...
+    @property
+    def sensors_left_out(self) -> tuple[str, ...]: ...
+    @property
+    def joints_left_out(self) -> tuple[str, ...]: ...
     @property
     def acceleration(self) -> NDArray[np.float64]: ...
     @property

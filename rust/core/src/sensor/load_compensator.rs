@@ -111,6 +111,14 @@ impl LoadCompensator {
         }
     }
 
+    /// Checks readings as [`LoadCompensator::update`] does.
+    ///
+    /// # Errors
+    /// [`Error::Input`] names the row.
+    pub fn check_readings(&self, wrenches: &[[f64; 6]]) -> Result<()> {
+        check_readings(&self.tree, wrenches)
+    }
+
     /// The sensors, all in use.
     pub fn tree(&self) -> &SensorTree {
         &self.tree
@@ -203,7 +211,7 @@ impl LoadCompensator {
 }
 
 /// One reading a sensor; NaN says that there is none, other numbers must be of a size to compute with.
-pub(crate) fn check_readings(tree: &SensorTree, wrenches: &[[f64; 6]]) -> Result<()> {
+fn check_readings(tree: &SensorTree, wrenches: &[[f64; 6]]) -> Result<()> {
     if wrenches.len() != tree.len() {
         return Err(wrong_count(tree, wrenches.len()));
     }

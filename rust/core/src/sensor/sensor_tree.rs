@@ -131,6 +131,29 @@ impl SensorTree {
         self.nearest[link]
     }
 
+    /// The nearest sensor, in use or not, that the joint which moves a body lies behind: all that a joint moves loads
+    /// the sensors before it.
+    pub(crate) fn before_joint(&self, robot: &Robot, body: usize) -> Option<usize> {
+        let mut body = body;
+        while body != WORLD {
+            let first = robot
+                .links()
+                .iter()
+                .filter(|link| link.body == body)
+                .find_map(|link| link.parent.filter(|parent| robot.links()[*parent].body != body));
+            if let Some(parent) = first {
+                return self.nearest[parent];
+            }
+            body = robot.parent_body(body);
+        }
+        None
+    }
+
+    /// Whether a sensor lies behind another or is that one, in use or not.
+    pub(crate) fn is_behind(&self, sensor: usize, other: usize) -> bool {
+        std::iter::successors(Some(sensor), |sensor| self.fixed_parent(*sensor)).any(|sensor| sensor == other)
+    }
+
     /// The sensors, each after all behind it.
     pub fn distal_first(&self) -> &[usize] {
         &self.distal_first
