@@ -125,7 +125,12 @@ fn real_roots(coefficients: &[f64; 5]) -> ([f64; 8], usize) {
     roots
 }
 
-fn roots_between(polynomial: &[f64; 5], bound: f64, extrema: &[f64], keep_touching: bool) -> ([f64; 8], usize) {
+fn roots_between(
+    polynomial: &[f64; 5],
+    bound: f64,
+    extrema: &[f64],
+    keep_touching: bool,
+) -> ([f64; 8], usize) {
     let value = |x: f64| polynomial.iter().rev().fold(0.0, |sum, c| sum * x + c);
     let scale = |x: f64| polynomial.iter().rev().fold(0.0, |sum, c| sum * x.abs() + c.abs());
     let (mut roots, mut count) = ([0.0; 8], 0);

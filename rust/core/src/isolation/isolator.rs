@@ -171,6 +171,8 @@ impl ContactIsolator {
                 return false;
             }
         }
+        self.rows.set(&self.robot, kinematics, tau_ext, &self.threshold);
+        self.several.identify(scene, &self.rows);
         self.report_several(kinematics);
         true
     }
@@ -194,6 +196,17 @@ impl ContactIsolator {
             self.report_found(kinematics, &found, determined);
         }
         self.isolation.rank_deficit = self.several.rank_deficit;
+        // Tolerances are wider than the thresholds; what contradicts those is not located.
+        if self.unexplained_share() > CONTRADICTION {
+            self.isolation.contacts.iter_mut().for_each(|contact| contact.located = false);
+        }
+    }
+
+    /// Root mean square of what is not explained, in thresholds.
+    fn unexplained_share(&self) -> f64 {
+        let squares =
+            self.unexplained.iter().zip(&self.threshold).map(|(torque, limit)| (torque / limit).powi(2));
+        (squares.sum::<f64>() / self.threshold.len() as f64).sqrt()
     }
 
     fn report_found(&mut self, kinematics: &Kinematics, found: &Found, determined: bool) {
@@ -206,7 +219,7 @@ impl ContactIsolator {
         let neighbours = (1..robot.body_count())
             .filter(|other| robot.parent_body(*other) == body || *other == robot.parent_body(body));
         self.near.extend(neighbours.flat_map(|other| robot.links_of_body(other)));
-        explain_force(&robot, kinematics, body, &at, &wrench.force, &mut self.unexplained);
+        explain_force(&robot, kinematics, body, &at, &found.force, &mut self.unexplained);
         let point_std = self.spread(kinematics, wrench, hit);
         let size = robot.links[hit.link].surface.as_ref().map_or(0.0, |surface| surface.bounding_sphere().1);
         let candidates = self.isolation.contacts.last().map_or(0, |last| last.candidates.end);
@@ -218,8 +231,8 @@ impl ContactIsolator {
         contact.point = hit.point;
         contact.point_local = pose.inverse_transform_point(&hit.point);
         contact.normal = hit.normal;
-        contact.force = wrench.force;
-        contact.wrench = stack(&wrench.force, &(hit.point - pose.translation).cross(&wrench.force));
+        contact.force = found.force;
+        contact.wrench = stack(&found.force, &(hit.point - pose.translation).cross(&found.force));
         contact.point_std = point_std;
         contact.candidates = candidates..self.isolation.candidates.len();
         contact.located = determined && self.pushing && SIGNIFICANCE * point_std < size;
@@ -327,13 +340,7 @@ impl ContactIsolator {
         let force =
             identify_force(robot, kinematics, body, &at, tau_ext, &self.threshold).unwrap_or(wrench.force);
         explain_force(robot, kinematics, body, &at, &force, &mut self.unexplained);
-        let squares = self
-            .unexplained
-            .iter()
-            .zip(&self.threshold)
-            .map(|(torque, threshold)| (torque / threshold).powi(2));
-        let unexplained = (squares.sum::<f64>() / self.threshold.len() as f64).sqrt();
-        let consistent = wrench.misfit() <= CONTRADICTION && unexplained <= CONTRADICTION;
+        let consistent = wrench.misfit() <= CONTRADICTION && self.unexplained_share() <= CONTRADICTION;
         self.near.clone_from(&self.isolation.link_candidates);
         let point_std = self.spread(kinematics, wrench, hit);
         let (robot, link) = (&self.robot, &self.robot.links[hit.link]);

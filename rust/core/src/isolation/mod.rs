@@ -4,6 +4,7 @@ mod body_set;
 mod conics;
 mod force;
 mod isolator;
+mod least_squares;
 mod line;
 mod open_part;
 mod pair;
@@ -11,6 +12,7 @@ mod region;
 mod result;
 mod rows;
 mod several;
+mod stacked;
 mod surface_search;
 mod wrench;
 

@@ -61,7 +61,8 @@ pub(super) fn estimate_pair(
     // Columns: second wrench, sum, right side.
     let mut stacked = SMatrix::<f64, 18, 13>::zeros();
     let mut unexplained = 0.0;
-    for (part, (row, on_second, on_total)) in parts.iter_mut().zip([(12, 0.0, 1.0), (6, -1.0, 1.0), (0, 1.0, 0.0)])
+    for (part, (row, on_second, on_total)) in
+        parts.iter_mut().zip([(12, 0.0, 1.0), (6, -1.0, 1.0), (0, 1.0, 0.0)])
     {
         if part.count == 0 {
             continue;

@@ -11,6 +11,8 @@ use crate::robot::{Kinematics, Robot};
 pub(super) const LEVER: f64 = 0.3;
 /// Sensors and models err by a part of what they measure, too: three standard deviations, as the threshold is.
 const TORQUE_SHARE: f64 = 0.03;
+/// And a part of what the strongest joint feels; it also keeps weights of similar size, as rank decisions need.
+const LARGEST_SHARE: f64 = 0.003;
 /// Rows that one factorisation takes in: six of the triangle so far and six new ones.
 const BLOCK: usize = 12;
 
@@ -40,8 +42,9 @@ impl TorqueRows {
             }
         }
         self.torque.copy_from_slice(torque);
+        let largest = torque.iter().fold(0.0_f64, |largest, torque| largest.max(torque.abs()));
         for ((tolerance, torque), threshold) in self.tolerance.iter_mut().zip(torque).zip(threshold) {
-            *tolerance = (TORQUE_SHARE * torque).hypot(*threshold);
+            *tolerance = (TORQUE_SHARE * torque).hypot(*threshold).hypot(LARGEST_SHARE * largest);
         }
         self.root = None;
     }

@@ -11,6 +11,7 @@ use super::pair::{estimate_pair, Open, PairEstimate};
 use super::region::Region;
 use super::result::Candidate;
 use super::rows::{TorqueRows, WrenchRows};
+use super::stacked::Stacked;
 use super::surface_search::{steepness, SurfaceSearch, STARTS};
 use super::wrench::WrenchEstimate;
 use crate::detection::TipSearch;
@@ -36,13 +37,22 @@ const ROUNDS: usize = 10;
 pub(super) struct Found {
     pub wrench: WrenchEstimate,
     pub hit: Candidate,
+    /// Of all torques, with the point known; else that of the wrench.
+    pub force: Vector3<f64>,
+}
+
+impl Found {
+    fn new(wrench: WrenchEstimate, hit: Candidate) -> Self {
+        let force = wrench.force;
+        Self { wrench, hit, force }
+    }
 }
 
 /// One way to explain the torques by two forces.
 #[derive(Debug, Clone)]
 pub(super) struct Solution {
     pub contacts: [Found; 2],
-    misfit: f64,
+    pub misfit: f64,
     steepness: f64,
 }
 
@@ -70,6 +80,9 @@ pub(super) struct SeveralContacts {
     line: LineCast,
     hits: Vec<Candidate>,
     search: SurfaceSearch,
+    stacked: Stacked,
+    bodies: Vec<usize>,
+    places: Vec<(usize, Vector3<f64>)>,
 }
 
 impl SeveralContacts {
@@ -85,6 +98,9 @@ impl SeveralContacts {
             line: LineCast::new(),
             hits: Vec::with_capacity(HITS),
             search: SurfaceSearch::new(robot),
+            stacked: Stacked::new(robot, max_contacts),
+            bodies: Vec::with_capacity(max_contacts + 1),
+            places: Vec::with_capacity(max_contacts + 2),
         }
     }
 
@@ -128,16 +144,18 @@ impl SeveralContacts {
                 _ => {}
             }
             if !(0..count).any(|index| self.peel(scene, rows, index)) {
-                return false;
+                self.bodies.clear();
+                self.bodies.extend(self.tips.tips().iter().take(self.max_contacts));
+                return self.solve_together(scene, rows, EXACT);
             }
         }
         false
     }
 
-    /// Two contacts that explain the torques within their tolerances. `tips` feel them.
+    /// Contacts that explain the torques within their tolerances. `tips` feel them.
     pub fn solve_roughly(&mut self, scene: Scene, rows: &TorqueRows, tips: &[usize]) -> bool {
         self.clear();
-        match *tips {
+        let solved = match *tips {
             [tip] => {
                 let mut best: Option<(f64, usize)> = None;
                 for before in scene.region.chain(scene.robot, tip).filter(|before| *before != tip) {
@@ -152,6 +170,97 @@ impl SeveralContacts {
             }
             [first, second] => self.solve_pair(scene, rows, [second, first], GOOD) && self.verified,
             _ => false,
+        };
+        if solved {
+            return true;
+        }
+        self.clear();
+        self.bodies.clear();
+        self.bodies.extend(tips.iter().take(self.max_contacts));
+        tips.len() > 1 && self.solve_together(scene, rows, GOOD)
+    }
+
+    /// Forces on all of `bodies`, or on one more before them, that explain the torques but for `limit` and are
+    /// determined by them.
+    fn solve_together(&mut self, scene: Scene, rows: &TorqueRows, limit: f64) -> bool {
+        let (found, tips) = (self.found.len(), self.bodies.len());
+        if tips < 2 || found + tips > self.max_contacts {
+            return false;
+        }
+        if self.stack(scene, rows, limit).is_some() {
+            return true;
+        }
+        if found + tips == self.max_contacts {
+            return false;
+        }
+        let mut best: Option<(f64, usize)> = None;
+        for before in 1..scene.robot.body_count() {
+            let carries = |tip: &usize| scene.region.chain(scene.robot, *tip).any(|joint| joint == before);
+            if self.bodies[..tips].contains(&before) || !self.bodies[..tips].iter().any(carries) {
+                continue;
+            }
+            self.bodies.push(before);
+            if let Some(misfit) = self.stack(scene, rows, limit) {
+                if best.is_none_or(|(least, _)| misfit < least) {
+                    best = Some((misfit, before));
+                }
+            }
+            self.found.truncate(found);
+            self.bodies.truncate(tips);
+        }
+        let Some((_, before)) = best else { return false };
+        self.bodies.push(before);
+        self.stack(scene, rows, limit).is_some()
+    }
+
+    /// Least squares for forces on `bodies`, or on bodies behind them that their lines hit; the misfit if they are
+    /// determined and explain the torques but for `limit`.
+    fn stack(&mut self, scene: Scene, rows: &TorqueRows, limit: f64) -> Option<f64> {
+        let found = self.found.len();
+        let mut bodies = std::mem::take(&mut self.bodies);
+        let mut misfit = None;
+        for _ in 0..ROUNDS {
+            if self.stacked.estimate(scene, rows, &bodies) > 0 {
+                break;
+            }
+            let Some(left) = self.stacked.misfit(limit) else { break };
+            let mut moved = false;
+            for body in &mut bodies {
+                let wrench = self.stacked.wrench(self.found.len() - found);
+                let Some(hit) = self.hit_behind(scene, rows, *body, &wrench, limit) else { break };
+                moved |= scene.robot.links[hit.link].body != *body;
+                *body = scene.robot.links[hit.link].body;
+                self.found.push(Found::new(wrench, hit));
+            }
+            if self.found.len() == found + bodies.len() && !moved {
+                misfit = Some(left);
+                break;
+            }
+            let missed = self.found.len() < found + bodies.len();
+            self.found.truncate(found);
+            if missed {
+                break;
+            }
+        }
+        self.bodies = bodies;
+        self.verified = misfit.is_some();
+        misfit
+    }
+
+    /// The forces of all contacts at their points, those of the first solution among them (Vorndamme 2017,
+    /// eqs. 29-30).
+    pub fn identify(&mut self, scene: Scene, rows: &TorqueRows) {
+        let best = self.solutions.first().into_iter().flat_map(|solution| &solution.contacts);
+        self.places.clear();
+        self.places.extend(self.found.iter().chain(best).map(|found| {
+            (scene.robot.links[found.hit.link].body, found.hit.point - scene.kinematics.origin)
+        }));
+        if !self.stacked.identify(scene, rows, &self.places) {
+            return;
+        }
+        let best = self.solutions.first_mut().into_iter().flat_map(|solution| &mut solution.contacts);
+        for (index, found) in self.found.iter_mut().chain(best).enumerate() {
+            found.force = self.stacked.force(index);
         }
     }
 
@@ -165,7 +274,7 @@ impl SeveralContacts {
         let wrench = WrenchEstimate::from_rows(wrench_rows, Vector3::zeros());
         let exact = wrench.rank == 6 && wrench.misfit() <= EXACT;
         let hit = if exact { self.hit_behind(scene, rows, tip, &wrench, EXACT) } else { None };
-        hit.map(|hit| self.found.push(Found { wrench, hit })).is_some()
+        hit.map(|hit| self.found.push(Found::new(wrench, hit))).is_some()
     }
 
     /// A tip whose force follows from the outermost joints that feel no other tip's: takes it out of the torques.
@@ -173,7 +282,8 @@ impl SeveralContacts {
         let Scene { robot, region, .. } = scene;
         let tips = self.tips.tips();
         let tip = tips[index];
-        let shared = |joint: &usize| tips.iter().any(|other| *other != tip && robot.chain(*other).contains(joint));
+        let shared =
+            |joint: &usize| tips.iter().any(|other| *other != tip && robot.chain(*other).contains(joint));
         let mut wrench_rows = WrenchRows::new();
         for joint in region.chain(robot, tip).rev().take_while(|joint| !shared(joint)) {
             rows.push_joint(robot, joint, &mut wrench_rows);
@@ -189,7 +299,7 @@ impl SeveralContacts {
             }
             let Some(hit) = self.hit_behind(scene, rows, tip, &wrench, EXACT) else { return false };
             rows.explain(robot, region, tip, &wrench);
-            self.found.push(Found { wrench, hit });
+            self.found.push(Found::new(wrench, hit));
             return true;
         }
         false
@@ -279,7 +389,7 @@ impl SeveralContacts {
         let rank = self.solutions.partition_point(|other| other.steepness <= steep);
         if rank < SOLUTIONS {
             let [first, second] = wrenches;
-            let contacts = [Found { wrench: first, hit: hits[0] }, Found { wrench: second, hit: hits[1] }];
+            let contacts = [Found::new(first, hits[0]), Found::new(second, hits[1])];
             self.solutions.insert(rank, Solution { contacts, misfit, steepness: steep });
             self.solutions.truncate(SOLUTIONS);
         }
@@ -312,7 +422,8 @@ impl SeveralContacts {
         let robot = scene.robot;
         let agrees = |joint: usize| {
             robot.velocity_range(joint).all(|k| {
-                (wrench.torque_on(&rows.axes[k]) - rows.torque[k]).abs() <= limit.max(SILENT) * rows.tolerance[k]
+                (wrench.torque_on(&rows.axes[k]) - rows.torque[k]).abs()
+                    <= limit.max(SILENT) * rows.tolerance[k]
             })
         };
         let behind = |other: usize| {
@@ -338,7 +449,8 @@ fn first_unexplained(scene: Scene, rows: &TorqueRows, tip: usize) -> Option<usiz
     let mut total: Option<WrenchEstimate> = None;
     for joint in region.chain(robot, tip) {
         if total.is_none() && wrench_rows.count >= 6 {
-            total = Some(WrenchEstimate::from_rows(wrench_rows.clone(), Vector3::zeros())).filter(|estimate| estimate.rank == 6);
+            total = Some(WrenchEstimate::from_rows(wrench_rows.clone(), Vector3::zeros()))
+                .filter(|estimate| estimate.rank == 6);
         }
         match &total {
             None => rows.push_joint(robot, joint, &mut wrench_rows),
