@@ -2,6 +2,7 @@
 
 mod bias;
 mod contact_monitor;
+mod prompt_acceleration;
 mod release;
 mod sensing;
 

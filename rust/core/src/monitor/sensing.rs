@@ -2,7 +2,8 @@
 
 use nalgebra::{Vector3, Vector6};
 
-use crate::error::{Error, Result};
+use super::prompt_acceleration::PromptAcceleration;
+use crate::error::Result;
 use crate::observer::MomentumObserver;
 use crate::robot::motion::{split, stack};
 use crate::robot::{Kinematics, Robot};
@@ -23,14 +24,14 @@ pub(super) struct Sensing {
     /// How long a wanted sensor stays untrusted after a gap [s].
     settling_time: f64,
     unsettled: Vec<f64>,
-    /// What the sensors see beyond what the observer knows yet `(nv,)`.
-    ahead: Vec<f64>,
+    prompt: PromptAcceleration,
     wanted_torque: Vec<f64>,
-    /// Velocity variables behind wanted sensors.
+    /// Velocity variables that wanted contacts alone load: behind wanted sensors, and at the same joint.
     behind_wanted: Vec<bool>,
     blind: Vec<bool>,
     /// Of each sensor: its external wrench without wanted contacts.
     unwanted: Vec<Vector6<f64>>,
+    trusted: Vec<Vector6<f64>>,
 }
 
 impl Sensing {
@@ -43,23 +44,15 @@ impl Sensing {
         dt: f64,
     ) -> Result<Self> {
         let tree = compensator.tree().clone();
-        let mut is_wanted = vec![false; tree.len()];
-        for name in wanted {
-            let Some(sensor) = tree.find(name) else {
-                return Err(Error::Input(format!(
-                    "wanted_contacts: there is no sensor '{name}'; the sensors are {}",
-                    tree.names().join(", ")
-                )));
-            };
-            is_wanted[sensor] = true;
-        }
-        // What is behind a wanted contact's sensor is meant, too.
-        let is_wanted: Vec<bool> = (0..tree.len())
-            .map(|sensor| (0..tree.len()).any(|other| is_wanted[other] && tree.is_behind(sensor, other)))
-            .collect();
+        let is_wanted = tree.wanted(wanted)?;
         let mut behind_wanted = vec![false; gain.len()];
         for body in 1..robot.body_count() {
-            if tree.before_joint(robot, body).is_some_and(|sensor| is_wanted[sensor]) {
+            let at_joint = |sensor: usize| {
+                let link = &robot.links()[tree.link(sensor)];
+                link.body == body && link.parent.is_none_or(|parent| robot.links()[parent].body != body)
+            };
+            let before = tree.before_joint(robot, body).is_some_and(|sensor| is_wanted[sensor]);
+            if before || (0..tree.len()).any(|sensor| is_wanted[sensor] && at_joint(sensor)) {
                 behind_wanted[robot.velocity_range(body)].fill(true);
             }
         }
@@ -68,11 +61,12 @@ impl Sensing {
             lag: LaggedTorques::new(tree.len(), gain, dt),
             settling_time: SETTLING / slowest,
             unsettled: vec![0.0; tree.len()],
-            ahead: vec![0.0; gain.len()],
+            prompt: PromptAcceleration::new(gain.len()),
             wanted_torque: vec![0.0; gain.len()],
             blind: behind_wanted.clone(),
             behind_wanted,
             unwanted: vec![Vector6::zeros(); tree.len()],
+            trusted: vec![Vector6::zeros(); tree.len()],
             wanted: is_wanted,
             tree,
             compensator,
@@ -84,23 +78,14 @@ impl Sensing {
         let robot = observer.robot().clone();
         let Self { compensator, lag, .. } = self;
         lag.step();
-        // The observer's acceleration is late by its low-pass, and a reading would be compensated wrongly until then.
-        // What the sensors see now, with the acceleration of the tick before, makes up for the delay.
-        compensator.compensate_at(observer.kinematics(), observer.last_acceleration(), readings);
-        self.tree.set_active(compensator.usable());
-        lag.set(&robot, observer.kinematics(), &self.tree, compensator.external());
-        self.ahead.fill(0.0);
-        for sensor in 0..self.tree.len() {
-            if self.tree.is_active(sensor) && self.tree.parent(sensor).is_none() {
-                lag.add_ahead(sensor, &mut self.ahead);
-            }
-        }
-        observer.accelerate_with(&self.ahead);
-        compensator.compensate_at(observer.kinematics(), observer.last_acceleration(), readings);
-        lag.set(&robot, observer.kinematics(), &self.tree, compensator.external());
+        self.prompt.correct(observer, compensator, lag, &mut self.tree, readings);
         lag.commit(compensator.external());
         self.find_blind(&robot, dt);
         self.exclude(observer.kinematics());
+        for (sensor, trusted) in self.trusted.iter_mut().enumerate() {
+            let settled = self.unsettled[sensor] <= 0.0;
+            *trusted = if settled { self.compensator.external()[sensor] } else { Vector6::repeat(f64::NAN) };
+        }
     }
 
     /// As [`LoadCompensator::check_readings`].
@@ -133,10 +118,14 @@ impl Sensing {
         &self.tree
     }
 
-    /// Which sensors' contacts are wanted.
-    #[allow(dead_code)] // of use to isolation
-    pub fn wanted(&self) -> &[bool] {
-        &self.wanted
+    /// External wrenches of all sensors, NaN where one is left out, or is wanted and not settled.
+    pub fn trusted(&self) -> &[Vector6<f64>] {
+        &self.trusted
+    }
+
+    /// The sensors' torques as the observer knows them.
+    pub fn lag(&self) -> &LaggedTorques {
+        &self.lag
     }
 
     /// Forgets all ticks.
@@ -148,6 +137,7 @@ impl Sensing {
         self.wanted_torque.fill(0.0);
         self.blind.copy_from_slice(&self.behind_wanted);
         self.unwanted.fill(Vector6::zeros());
+        self.trusted.fill(Vector6::zeros());
     }
 
     /// Joints that a wanted contact may load unmeasured: on the chain of a wanted sensor without a settled reading,

@@ -103,3 +103,99 @@ impl LaggedTorques {
 pub(crate) fn is_known(wrench: &Vector6<f64>) -> bool {
     !wrench[0].is_nan()
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix3, Vector3, Vector6};
+
+    use super::{LaggedTorques, SensorTree};
+    use crate::robot::{JointDescription, JointKind, Kinematics, LinkDescription, Robot, RobotDescription};
+    use crate::sensor::{Convention, ForceTorqueSensor};
+    use crate::spatial::Pose;
+
+    const DT: f64 = 1e-3;
+    const GAIN: f64 = 100.0;
+
+    /// A prismatic joint along x: the torque of a wrench is its first component.
+    fn slide() -> (Robot, SensorTree, Kinematics) {
+        let joint = JointDescription {
+            name: "slide".into(),
+            parent: 0,
+            kind: JointKind::Prismatic,
+            axis: Vector3::x(),
+            placement: Pose::identity(),
+            mass: 1.0,
+            com: Vector3::zeros(),
+            inertia: Matrix3::identity(),
+            armature: 0.0,
+        };
+        let link = |name: &str, joint, parent| LinkDescription {
+            name: name.into(),
+            joint,
+            placement: Pose::identity(),
+            parent,
+            mass: 0.0,
+            com: Vector3::zeros(),
+            inertia: Matrix3::zeros(),
+            geometry: vec![],
+        };
+        let robot = Robot::new(RobotDescription {
+            name: "slide".into(),
+            joints: vec![joint],
+            links: vec![link("base", 0, None), link("carriage", 1, Some(0))],
+            gravity: Vector3::zeros(),
+            warnings: vec![],
+        })
+        .expect("a valid description");
+        let sensor = ForceTorqueSensor {
+            name: "S".into(),
+            link: "carriage".into(),
+            pose: Pose::identity(),
+            convention: Convention::Load,
+        };
+        let tree = SensorTree::new(&robot, &[sensor]).expect("a valid sensor");
+        let mut kinematics = Kinematics::new(&robot);
+        kinematics.set_configuration(&robot, &[0.0]);
+        (robot, tree, kinematics)
+    }
+
+    fn follow(forces: &[f64]) -> Vec<f64> {
+        let (robot, tree, kinematics) = slide();
+        let mut lag = LaggedTorques::new(1, &[GAIN], DT);
+        forces
+            .iter()
+            .map(|force| {
+                let wrench = [Vector6::new(*force, 3.0, 0.0, 0.0, 0.0, 0.0)];
+                lag.step();
+                lag.set(&robot, &kinematics, &tree, &wrench);
+                lag.commit(&wrench);
+                lag.lagged(0)[0]
+            })
+            .collect()
+    }
+
+    #[test]
+    fn it_is_the_observers_low_pass() {
+        let rate = 50.0;
+        let forces: Vec<f64> = (0..200).map(|k| 10.0 * (rate * DT * k as f64).sin()).collect();
+        let lagged = follow(&forces);
+        // Response of 1 / (1 + s / gain) from rest.
+        let share = GAIN / (GAIN * GAIN + rate * rate);
+        for (k, lagged) in lagged.iter().enumerate() {
+            let t = DT * k as f64;
+            let steady = GAIN * (rate * t).sin() - rate * (rate * t).cos();
+            let expected = 10.0 * share * (steady + rate * (-GAIN * t).exp());
+            assert!((lagged - expected).abs() < 0.01, "{k}: {lagged} {expected}");
+        }
+    }
+
+    #[test]
+    fn after_a_gap_it_starts_where_the_sensor_is() {
+        let mut forces = vec![10.0; 100];
+        forces[30..50].fill(f64::NAN);
+        forces[50..].fill(20.0);
+        let lagged = follow(&forces);
+        assert!((lagged[29] - lagged[40]).abs() < 1e-12, "held in the gap");
+        assert!((lagged[50] - 20.0).abs() < 1e-12 && (lagged[99] - 20.0).abs() < 1e-12);
+    }
+}
