@@ -258,7 +258,7 @@ def test_a_hit_over_time_is_seen_within_three_milliseconds(robot: cs.Robot) -> N
 
 
 def test_the_command_prints_and_draws(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    options = ["--singles", "40", "--pairs", "60", "--fives", "10", "--processes", "1", "--seed", "422"]
+    options = ["--singles", "40", "--pairs", "60", "--fives", "10", "--hits", "5", "--seed", "422"]
     assert command(["study", "vorndamme2017", *options, "--json", "--png", str(tmp_path)]) == 0
     data = json.loads(capsys.readouterr().out)
     assert data["options"]["pairs"] == 60

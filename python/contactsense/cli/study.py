@@ -101,6 +101,7 @@ def vorndamme2017(
         int, typer.Option(help="Scenes with two contacts (twice: by links, and by area).")
     ] = 5000,
     fives: Annotated[int, typer.Option(help="Scenes with five contacts.")] = 5000,
+    hits: Annotated[int, typer.Option(help="Hits over time, of the scenes with one contact.")] = 100,
     seed: Annotated[int, typer.Option(help="Of points, forces, poses and noise.")] = 0,
     noise: Annotated[float, typer.Option(help="Relative noise of the runs with noise.")] = 0.01,
     cone: Annotated[
@@ -118,7 +119,7 @@ def vorndamme2017(
 
     from ..studies.vorndamme2017 import data, report, study
 
-    options = study.Options(singles, pairs, fives, seed, noise, math.radians(cone), random_poses)
+    options = study.Options(singles, pairs, fives, hits, seed, noise, math.radians(cone), random_poses)
     save = _picture_writer() if png is not None else None
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:

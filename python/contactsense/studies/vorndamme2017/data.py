@@ -25,7 +25,7 @@ def as_data(study: Study) -> dict[str, Any]:
             "hits": [
                 {
                     "amplitude": hits.amplitude,
-                    "simulated": hits.simulated,
+                    "kind": hits.kind,
                     "method": method,
                     **series_figures(hits.series, method),
                 }

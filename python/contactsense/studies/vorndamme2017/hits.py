@@ -32,11 +32,11 @@ def scaled(scene: Scene, amplitude: float) -> Scene:
     return Scene(scene.q, touches)
 
 
-def ideal_series(robot: Robot, scene: Scene, methods: Sequence[Method]) -> Series:
+def ideal_series(robot: Robot, scene: Scene, methods: Sequence[Method], *, late: bool = True) -> Series:
     """A hit on the robot at rest, with the errors that (6) and (10) give: the paper's Fig. 10.
 
     Torques are filtered as in (6). Wrenches miss what (10) leaves of the acceleration of the bodies behind
-    the sensor.
+    the sensor; nothing, if the acceleration is not `late`.
     """
     time = np.linspace(0.0, LENGTH, round(LENGTH / STEP) + 1)
     true, seen = half_sine(time), filtered_half_sine(time)
@@ -49,7 +49,7 @@ def ideal_series(robot: Robot, scene: Scene, methods: Sequence[Method]) -> Serie
         contacts = []
         for now, past in zip(true, seen, strict=True):
             torques = np.zeros(robot.nv) if method == "sensors" else past * tau
-            readings = [now * wrenches - (now - past) * missed] if sensor_links(method) else []
+            readings = [now * wrenches - late * (now - past) * missed] if sensor_links(method) else []
             contacts.append(isolator.isolate(scene.q, torques, *readings).contacts)
         points = np.tile(scene.touches[0].point, (len(time), 1))
         signals[method] = _signal(contacts, points)

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from multiprocessing import get_context
 from typing import Literal
 
 import numpy as np
@@ -16,11 +13,11 @@ from ... import ContactIsolator, ForceTorqueSensor, Robot
 from .information import rank_deficit
 from .instruments import Method, observed, sensor_links
 from .judge import Verdict, judge, judge_answers
+from .parallel import each, shared_robot
 from .pseudoinverse import isolate as isolate_by_pseudoinverse
 from .scenes import Scene
 
 CHUNK = 100
-ROBOT = "atlas"
 THRESHOLD = 1e-3  # [N, Nm], the paper's and the isolator's default
 
 
@@ -64,7 +61,7 @@ def make_sensors(method: Method) -> list[ForceTorqueSensor]:
 
 def run_task(task: Task) -> list[Verdict]:
     """Isolates and judges every scene of a task."""
-    robot, setting = _robot(), task.setting
+    robot, setting = shared_robot(), task.setting
     if setting.solver == "pseudoinverse":
         return [
             judge_answers(
@@ -96,40 +93,21 @@ def run_tasks(
         for start in range(0, len(task.scenes), CHUNK)
     ]
     results: list[list[Verdict]] = [[] for _ in tasks]
-    for (number, chunk), verdicts in zip(chunks, _each(chunks, processes, done), strict=True):
-        assert len(verdicts) == len(chunk.scenes)
+    found = each(_run_numbered, chunks, processes, lambda chunk: done(len(chunk[1].scenes)))
+    for (number, _), verdicts in zip(chunks, found, strict=True):
         results[number] += verdicts
     return results
 
 
-def _each(
-    chunks: Sequence[tuple[int, Task]], processes: int | None, done: Callable[[int], None]
-) -> Iterable[list[Verdict]]:
-    count = processes or os.cpu_count() or 1
-    if count == 1:
-        for _, chunk in chunks:
-            verdicts = run_task(chunk)
-            done(len(verdicts))
-            yield verdicts
-        return
-    with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as pool:
-        futures: list[Future[list[Verdict]]] = [pool.submit(run_task, chunk) for _, chunk in chunks]
-        for future in as_completed(futures):
-            done(len(future.result()))
-        for future in futures:
-            yield future.result()
-
-
-@lru_cache(maxsize=1)
-def _robot() -> Robot:
-    return Robot.named(ROBOT)
+def _run_numbered(chunk: tuple[int, Task]) -> list[Verdict]:
+    return run_task(chunk[1])
 
 
 @lru_cache(maxsize=8)
 def _isolator(setting: Setting) -> ContactIsolator:
-    return make_isolator(_robot(), setting)
+    return make_isolator(shared_robot(), setting)
 
 
 @lru_cache(maxsize=10_000)
 def _deficit(q: tuple[float, ...], links: tuple[str, ...], method: Method) -> int:
-    return rank_deficit(_robot(), np.array(q), links, method)
+    return rank_deficit(shared_robot(), np.array(q), links, method)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from ...demo.style import DETECTED, ESTIMATE, GREY, NAMED, TRUTH
 from .instruments import SENSOR_LINKS, Method, carries
-from .study import Hits, Study
+from .study import Hits, Kind, Study
 from .time_series import DURATION, Series, half_sine
 
 COLOURS: dict[Method, str] = {"torques": ESTIMATE, "both": DETECTED, "sensors": NAMED}
@@ -21,20 +21,20 @@ LABELS: dict[Method, str] = {
 }
 FLOOR = 1e-17  # [m]
 SHOWN = (-1.0, 36.0)  # [ms]
+TITLES: dict[Kind, str] = {
+    "late": "{0} hits, as late as (6) and (10) say",
+    "prompt": "{0} hits, acceleration without delay",
+    "simulated": "{0} simulated hits of {1:g} N, in motion",
+}
 
 
 def draw_series(figure: Figure, study: Study) -> None:
-    """One hit, all hits with ideal errors, and simulated hits: force above, error of the point below."""
-    ideal = study.hits[0]
-    simulated = [hits for hits in study.hits if hits.simulated][-1]
-    felt = _felt(study, ideal)
-    one = next((hit for hit in felt if hit.scene.links[0] not in ("utorso", "head")), felt[0])
-    moving = _felt(study, simulated)
-    columns = (
-        (f"A hit of {ideal.amplitude:g} N on {one.scene.links[0]}", ideal.amplitude, [one]),
-        (f"{len(felt)} hits, errors of (6) and (10)", ideal.amplitude, felt),
-        (f"{len(moving)} simulated hits, robot in motion", simulated.amplitude, moving),
-    )
+    """Hits of three kinds: force above, error of the point below."""
+    columns = [
+        (title, hits.amplitude, _felt(study, hits))
+        for kind, title in TITLES.items()
+        for hits in [[each for each in study.hits if each.kind == kind][-1]]
+    ]
     axes = figure.subplots(2, 3, sharex=True, sharey="row")
     for (force, point), (title, amplitude, hits) in zip(axes.T, columns, strict=True):
         time = 1e3 * hits[0].time
@@ -44,7 +44,7 @@ def draw_series(figure: Figure, study: Study) -> None:
         fine = np.linspace(*SHOWN, 400)
         force.plot(fine, half_sine(1e-3 * fine), color=TRUTH, lw=1.3, ls=(0, (4, 2)), label="true", zorder=4)
         force.axhline(0.0, color=GREY, lw=0.6)
-        force.set_title(title, weight="bold")
+        force.set_title(title.format(len(hits), amplitude), weight="bold")
         point.set_xlabel("time since the hit began [ms]")
         for each in (force, point):
             each.axvspan(0.0, 1e3 * DURATION, color="0.95", lw=0, zorder=0)

@@ -146,7 +146,7 @@ def series_table(study: Study) -> Table:
     ):
         sheet.add_column(column, justify="right")
     for hits in study.hits:
-        kind = "simulated" if hits.simulated else "(6), (10)"
+        kind = {"late": "(6), (10)", "prompt": "(6)", "simulated": "simulated"}[hits.kind]
         for number, method in enumerate(hits.series[0].signals):
             figures = series_figures(hits.series, method)
             sheet.add_row(
@@ -161,8 +161,8 @@ def series_table(study: Study) -> Table:
                 f"{figures['point_error_max']:.0e}",
             )
     sheet.caption = (
-        "(6), (10): the observer's and the acceleration's errors as these say; right: within 1 um\n"
-        "simulated: a floating robot in motion, through ContactMonitor; right: within 1 cm"
+        "(6), (10): torques and acceleration as late as these say; (6): acceleration without delay;\n"
+        "both: right within 1 um. Simulated: a floating robot in motion, ContactMonitor; within 1 cm"
     )
     sheet.caption_justify = "left"
     return sheet

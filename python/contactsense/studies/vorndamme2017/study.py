@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 
@@ -11,15 +12,15 @@ from ... import InputError, Robot
 from ..sampling import CONE
 from .hits import ideal_series, scaled, simulated_series
 from .instruments import METHODS, Method, external_torque, external_wrenches
-from .isolation import ROBOT, THRESHOLD, Setting, Task, run_tasks
+from .isolation import THRESHOLD, Setting, Task, run_tasks
 from .judge import Verdict
+from .parallel import ROBOT, each, shared_robot
 from .scenes import Scene, fives, pairs, singles
 from .time_series import Series
 from .timing import Timing, measure
 
 TIMED = 1000  # scenes
-HITS = 100  # scenes of the time series
-SIMULATED_HITS = 20
+SIMULATED = 5  # one hit in so many
 AMPLITUDES = (1.0, 50.0)  # [N]
 SIGMAS = 3.0  # threshold over noise
 
@@ -31,13 +32,14 @@ class Options:
     singles: int = 3000
     pairs: int = 5000
     fives: int = 5000
+    hits: int = 100
     seed: int = 0
     noise: float = 0.01  # relative, of the runs with noise
     cone: float = CONE  # [rad]
     random_poses: bool = False
 
     def __post_init__(self) -> None:
-        for name in ("singles", "pairs", "fives"):
+        for name in ("singles", "pairs", "fives", "hits"):
             if getattr(self, name) < 1:
                 raise InputError(f"{name}: must be at least 1, not {getattr(self, name)}")
         if not 0.0 < self.noise < 1.0:
@@ -56,12 +58,16 @@ class Run:
     verdicts: list[Verdict]
 
 
+# With the errors of (6) and (10); of (6) alone, the acceleration without delay; on a simulated robot.
+Kind: TypeAlias = Literal["late", "prompt", "simulated"]
+
+
 @dataclass(frozen=True)
 class Hits:
     """Hits of one size over time."""
 
     amplitude: float  # [N]
-    simulated: bool  # on a moving robot, or with the errors of (6) and (10)
+    kind: Kind
     series: list[Series]
 
 
@@ -120,7 +126,7 @@ def run(
         Run(name, task.setting, list(task.scenes), found)
         for (name, task), found in zip(tasks, verdicts, strict=True)
     ]
-    hits = _hits(robot, sets["singles"][:HITS], over_time, progress)
+    hits = _hits(sets["singles"][: options.hits], over_time, processes, progress)
     timings: list[Timing] = []
     timed = [(sets[name][:TIMED], method) for method in over_time for name in ("singles", "pairs", "fives")]
     for number, (scenes, method) in enumerate(timed, 1):
@@ -180,20 +186,41 @@ def _usual(values: np.ndarray) -> np.ndarray:
 
 
 def _hits(
-    robot: Robot,
     scenes: Sequence[Scene],
     methods: Sequence[Method],
+    processes: int | None,
     progress: Callable[[str, int, int], None],
 ) -> list[Hits]:
-    sets = [(amplitude, simulated) for simulated in (False, True) for amplitude in AMPLITUDES]
-    found = []
-    for number, (amplitude, simulated) in enumerate(sets, 1):
-        chosen = [scaled(scene, amplitude) for scene in scenes]
-        if simulated:
-            measured = [method for method in methods if method != "sensors"]
-            series = [simulated_series(robot, scene, measured) for scene in chosen[:SIMULATED_HITS]]
-        else:
-            series = [ideal_series(robot, scene, methods) for scene in chosen]
-        found.append(Hits(amplitude, simulated, series))
-        progress("hits over time", number, len(sets))
-    return found
+    sets: list[tuple[Kind, float]] = [(kind, size) for kind in get_args(Kind) for size in AMPLITUDES]
+    items = [
+        (kind, scaled(scene, amplitude), tuple(methods))
+        for kind, amplitude in sets
+        for scene in (scenes[::SIMULATED] if kind == "simulated" else scenes)
+    ]
+    done = 0
+
+    def count(item: HitItem) -> None:
+        nonlocal done
+        done += 1
+        progress("hits over time", done, len(items))
+
+    found = iter(each(_hit, items, processes, count))
+    series = [(item[0], next(found)) for item in items]
+    return [
+        Hits(
+            amplitude,
+            kind,
+            [one for each_kind, one in series if each_kind == kind and np.isclose(one.amplitude, amplitude)],
+        )
+        for kind, amplitude in sets
+    ]
+
+
+HitItem: TypeAlias = tuple[Kind, Scene, tuple[Method, ...]]
+
+
+def _hit(item: HitItem) -> Series:
+    kind, scene, methods = item
+    if kind == "simulated":
+        return simulated_series(shared_robot(), scene, [each for each in methods if each != "sensors"])
+    return ideal_series(shared_robot(), scene, methods, late=kind == "late")

@@ -70,6 +70,11 @@ class Series:
         errors = self.signals[method].point_error
         return float(np.nanmax(errors)) if np.isfinite(errors).any() else np.nan
 
+    @property
+    def amplitude(self) -> float:
+        """Greatest force [N]."""
+        return float(np.linalg.norm(self.scene.touches[0].force))
+
     @cached_property
     def direction(self) -> FloatArray:
         """Of the force, a unit vector `(3,)`."""
