@@ -11,24 +11,27 @@ from rich.table import Table
 
 from .data import series_figures
 from .instruments import METHODS, Method
+from .isolation import THRESHOLD
 from .score import Score, by_deficit, score
 from .study import Run, Study
 from .timing import GOALS, PAPER
 
 NAMES: dict[Method, str] = {
-    "torques": "joint torques",
-    "distal": "+ hands, feet",
-    "both": "+ all 9 sensors",
-    "sensors": "9 sensors only",
+    "torques": "torques",
+    "distal": "+ 4",
+    "both": "+ 9",
+    "sensors": "9 alone",
 }
-BASELINE = "pseudoinverse*"
+BASELINE = "paper*"
 NOTES = (
-    "Exact, 1 cm, 25 cm: shares of scenes whose every contact has an estimate of its own that near.",
-    "The estimate is the point, or the first candidate where the point is open. Candidate: every",
-    "contact has a candidate within 1 cm. Links: just the links touched are named. Claimed: all are",
-    "said to be located; false: some claim is more than 1 cm from every contact; off: the worst",
-    "claim's distance. Rank deficit: of the true contacts, by NumPy.",
-    "* The paper's steps (28), (26) and 4 in NumPy, told the links touched; the others must find them.",
+    "Torques: of the joints; + 4: and sensors of hands and feet; + 9: and all sensors.",
+    "Shares in %. Exact (1 nm), 1 cm, 25 cm: every contact has an estimate of its own",
+    "that near; the estimate is the point, or the first candidate where that is open.",
+    "Candidate: every contact has a candidate within 1 cm. Links: just those touched",
+    "are named. Claim: all are said to be located; false: some claim is more than 1 cm",
+    "from every contact; off: the worst. Rank deficit: of the true contacts, by NumPy.",
+    "3 sd: thresholds of three standard deviations of the noise at usual torques.",
+    "* The paper's steps (28), (26), 4 in NumPy, told the links touched.",
 )
 
 
@@ -47,7 +50,7 @@ def print_study(study: Study, console: Console) -> None:
     for sheet in sheets:
         console.print(sheet)
         console.print()
-    console.print("\n".join(NOTES), style="dim", highlight=False)
+    console.print("\n".join(NOTES), style="dim", highlight=False, soft_wrap=True)
 
 
 Row = tuple[tuple[str, str], Score]
@@ -57,9 +60,9 @@ def _by_method(study: Study, name: str) -> Iterable[Row]:
     for run in _runs(study, name):
         determined = [verdict for verdict in run.verdicts if verdict.rank_deficit == 0]
         unseen = [verdict for verdict in run.verdicts if verdict.rank_deficit > 0]
-        yield (_label(run), "determined"), score(determined)
+        yield (_label(run), "yes"), score(determined)
         if unseen:
-            yield ("", "not"), score(unseen)
+            yield ("", "no"), score(unseen)
 
 
 def _by_rank(study: Study, name: str) -> Iterable[Row]:
@@ -79,8 +82,8 @@ def _noisy(study: Study) -> Iterable[Row]:
         if run.setting.noise:
             determined = [verdict for verdict in run.verdicts if verdict.rank_deficit == 0]
             matched = isinstance(run.setting.torque_threshold, tuple)
-            label = "" if matched else f"{run.name}, {NAMES[run.setting.method]}"
-            yield (label, "matched" if matched else "default"), score(determined)
+            label = "" if matched else f"{len(run.scenes[0].touches)}, {NAMES[run.setting.method]}"
+            yield (label, "3 sd" if matched else f"{THRESHOLD:g}"), score(determined)
 
 
 def _runs(study: Study, name: str) -> list[Run]:
@@ -92,18 +95,18 @@ def _label(run: Run) -> str:
 
 
 def _scores(title: str, rows: Iterable[Row]) -> Table:
-    second = {"One": "", "Wit": "threshold"}.get(title[:3], "rank deficit")
+    second = {"One": "deter-\nmined", "Wit": "thres-\nholds"}.get(title[:3], "rank\ndeficit")
     sheet = _sheet(title, ["", second])
     for column in (
         "scenes",
         "exact",
         "1 cm",
         "25 cm",
-        "candidate",
+        "candi-\ndate",
         "links",
-        "claimed",
+        "claim",
         "false",
-        "off, m",
+        "off\nm",
     ):
         sheet.add_column(column, justify="right", no_wrap=True)
     for number, (labels, figures) in enumerate(rows):
@@ -137,12 +140,12 @@ def series_table(study: Study) -> Table:
     sheet = _sheet("A hit of 20 ms, observer gain 500/s, 1 kHz", ["hit", ""])
     for column in (
         "hits",
-        "located",
-        "delay, ms",
-        "of the peak",
-        "right from 2nd sample",
-        "right samples",
-        "point off, m",
+        "loca-\nted",
+        "delay\nms",
+        "at peak\nms",
+        "right by\n2nd",
+        "right\nsamples",
+        "worst\nm",
     ):
         sheet.add_column(column, justify="right")
     for hits in study.hits:
@@ -161,8 +164,9 @@ def series_table(study: Study) -> Table:
                 f"{figures['point_error_max']:.0e}",
             )
     sheet.caption = (
-        "(6), (10): torques and acceleration as late as these say; (6): acceleration without delay;\n"
-        "both: right within 1 um. Simulated: a floating robot in motion, ContactMonitor; within 1 cm"
+        "(6), (10): torques and acceleration as late as these say; (6): the acceleration\n"
+        "without delay; right: within 1 um. Simulated: a floating robot in motion,\n"
+        "through ContactMonitor; right: within 1 cm."
     )
     sheet.caption_justify = "left"
     return sheet
@@ -171,7 +175,7 @@ def series_table(study: Study) -> Table:
 def timing_table(study: Study) -> Table:
     """Time of a call."""
     sheet = _sheet("Time of a call from Python, us", ["contacts", ""])
-    for column in ("calls", "mean", "max", "plain max", "goal: mean", "max", "paper: mean", "max"):
+    for column in ("calls", "mean", "max", "plain\nmax", "goal:\nmean", "max", "paper:\nmean", "max"):
         sheet.add_column(column, justify="right")
     for timing in study.timings:
         key, none = (timing.contacts, timing.method), (np.nan, np.nan)
@@ -183,15 +187,22 @@ def timing_table(study: Study) -> Table:
             *(f"{1e6 * value:.1f}" for value in (timing.mean, timing.max, timing.plain_max)),
             *("" if np.isnan(value) else f"{1e6 * value:,.0f}" for value in others),
         )
-    sheet.caption = "max: of the fastest of three calls, over scenes; plain max: of all calls but the first"
+    sheet.caption = "max: over scenes, of the fastest of three calls; plain max: of all\ncalls but the first"
     sheet.caption_justify = "left"
     return sheet
 
 
 def summary_table(study: Study) -> Table:
     """What can be told with which sensors, after Table II."""
-    sheet = _sheet("What each set of sensors tells (ideal measurements)", ["", ""])
-    for column in ("determined", "felt", "links named", "isolated, 1 cm", "identified, 1 %", "false claims"):
+    sheet = _sheet("What each set of sensors tells, ideal measurements, %", ["", ""])
+    for column in (
+        "deter-\nmined",
+        "felt",
+        "links\nnamed",
+        "isolated\n1 cm",
+        "identified\n1 %",
+        "false\nclaims",
+    ):
         sheet.add_column(column, justify="right")
     for method in METHODS:
         label = NAMES[method]
@@ -209,12 +220,12 @@ def summary_table(study: Study) -> Table:
 
 
 def percent(share: float) -> str:
-    """Rounded so that only all is 100 % and only none is 0 %."""
+    """In %, rounded so that only all is 100 and only none is 0."""
     if np.isnan(share):
         return "-"
     if share in (0.0, 1.0):
-        return f"{100 * share:.0f} %"
-    return f"{min(max(100 * share, 0.01), 99.99):.{1 if 0.001 <= share <= 0.999 else 2}f} %"
+        return f"{100 * share:.0f}"
+    return f"{min(max(100 * share, 0.01), 99.99):.{1 if 0.001 <= share <= 0.999 else 2}f}"
 
 
 def _milliseconds(seconds: float) -> str:
@@ -223,7 +234,12 @@ def _milliseconds(seconds: float) -> str:
 
 def _sheet(title: str, first: Sequence[str]) -> Table:
     sheet = Table(
-        title=title, title_justify="left", box=box.SIMPLE_HEAD, show_edge=False, padding=(0, 1, 0, 0)
+        title=title,
+        title_justify="left",
+        box=box.SIMPLE_HEAD,
+        show_edge=False,
+        padding=(0, 1, 0, 0),
+        pad_edge=False,
     )
     for column in first:
         sheet.add_column(column, no_wrap=True)
