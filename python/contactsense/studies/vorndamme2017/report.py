@@ -30,7 +30,7 @@ NOTES = (
     "Candidate: every contact has a candidate within 1 cm. Links: just those touched",
     "are named. Claim: all are said to be located; false: some claim is more than 1 cm",
     "from every contact; off: the worst. Rank deficit: of the true contacts, by NumPy.",
-    "3 sd: thresholds of three standard deviations of the noise at usual torques.",
+    "Limit 3 sd: thresholds of three standard deviations of the noise at usual torques.",
     "* The paper's steps (28), (26), 4 in NumPy, told the links touched.",
 )
 
@@ -95,7 +95,7 @@ def _label(run: Run) -> str:
 
 
 def _scores(title: str, rows: Iterable[Row]) -> Table:
-    second = {"One": "deter-\nmined", "Wit": "thres-\nholds"}.get(title[:3], "rank\ndeficit")
+    second = {"One": "deter-\nmined", "Wit": "limit"}.get(title[:3], "rank\ndeficit")
     sheet = _sheet(title, ["", second])
     for column in (
         "scenes",
