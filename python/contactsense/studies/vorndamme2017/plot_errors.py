@@ -33,7 +33,7 @@ def draw_pairs(figure: Figure, study: Study) -> None:
         ("Joint torques and nine sensors", study.run("pairs", "both")),
         ("Paper's steps, links given*", study.baseline("pairs")),
     )
-    axes = figure.subplots(1, 3, sharey=True)
+    axes = figure.subplots(1, 3)
     for each, (title, run) in zip(axes, panels, strict=True):
         groups = by_deficit(run.verdicts)
         rows = [(f"all ({len(run.verdicts):,})", run.verdicts)]
@@ -74,12 +74,12 @@ def _bars(axes: Any, rows: Sequence[tuple[str, Sequence[Verdict]]]) -> None:
     axes.axhline(0.5, color=GREY, lw=0.8)
     axes.set_xticks(np.linspace(0.0, 1.0, 5), ["0", "25", "50", "75", "100 %"])
     axes.spines["left"].set_visible(False)
-    axes.tick_params(axis="y", length=0, labelleft=True)
+    axes.tick_params(axis="y", length=0)
 
 
 def draw_fives(figure: Figure, study: Study) -> None:
     """Share of scenes whose five points are all within a distance, by the fifth link."""
-    panels = (("torques", "Joint torques"), ("both", "Joint torques and nine sensors"))
+    panels = (("torques", "Joint torques"), ("both", "With nine sensors"))
     axes = figure.subplots(1, 2, sharey=True)
     for each, (method, title) in zip(axes, panels, strict=True):
         run = study.run("fives", method)  # type: ignore[arg-type]

@@ -19,6 +19,8 @@ LABELS: dict[Method, str] = {
     "both": "joint torques and sensors",
     "sensors": "sensors alone",
 }
+# In the order they are drawn.
+WIDTHS: dict[Method, float] = {"sensors": 4.5, "torques": 2.0, "both": 2.0}
 FLOOR = 1e-17  # [m]
 SHOWN = (-1.0, 36.0)  # [ms]
 TITLES: dict[Kind, str] = {
@@ -38,9 +40,9 @@ def draw_series(figure: Figure, study: Study) -> None:
     axes = figure.subplots(2, 3, sharex=True, sharey="row")
     for (force, point), (title, amplitude, hits) in zip(axes.T, columns, strict=True):
         time = 1e3 * hits[0].time
-        for method in hits[0].signals:
+        for method in (each for each in WIDTHS if each in hits[0].signals):
             _forces(force, time, hits, method, amplitude)
-            _errors(point, time, np.array([hit.signals[method].point_error for hit in hits]), COLOURS[method])
+            _errors(point, time, np.array([hit.signals[method].point_error for hit in hits]), method)
         fine = np.linspace(*SHOWN, 400)
         force.plot(fine, half_sine(1e-3 * fine), color=TRUTH, lw=1.3, ls=(0, (4, 2)), label="true", zorder=4)
         force.axhline(0.0, color=GREY, lw=0.6)
@@ -75,12 +77,12 @@ def _felt(study: Study, hits: Hits) -> list[Series]:
 
 def _forces(axes: Any, time: Any, hits: Sequence[Series], method: Method, amplitude: float) -> None:
     along = np.array([np.nan_to_num(hit.signals[method].force) @ hit.direction for hit in hits]) / amplitude
-    axes.plot(time, np.median(along, axis=0), color=COLOURS[method], lw=2.0, label=LABELS[method])
+    axes.plot(time, np.median(along, axis=0), color=COLOURS[method], lw=WIDTHS[method], label=LABELS[method])
     low, high = np.percentile(along, (5, 95), axis=0)
     axes.fill_between(time, low, high, color=COLOURS[method], alpha=0.2, lw=0)
 
 
-def _errors(axes: Any, time: Any, errors: Any, colour: str) -> None:
+def _errors(axes: Any, time: Any, errors: Any, method: Method) -> None:
     rows, columns = np.nonzero(np.isfinite(errors))
     shown = np.maximum(errors[rows, columns], FLOOR)
-    axes.plot(time[columns], shown, "o", ms=3, color=colour, alpha=0.6, mew=0)
+    axes.plot(time[columns], shown, "o", ms=2 + WIDTHS[method] / 2, color=COLOURS[method], alpha=0.6, mew=0)

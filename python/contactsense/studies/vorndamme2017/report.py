@@ -25,8 +25,8 @@ NAMES: dict[Method, str] = {
 BASELINE = "paper*"
 NOTES = (
     "Torques: of the joints; + 4: and sensors of hands and feet; + 9: and all sensors.",
-    "Shares in %. Exact (1 nm), 1 cm, 25 cm: every contact has an estimate of its own",
-    "that near; the estimate is the point, or the first candidate where that is open.",
+    "n: scenes; shares in %. Exact (1 nm), 1 cm, 25 cm: every contact has an estimate",
+    "that near of its own: the point, or the first candidate where that is open.",
     "Candidate: every contact has a candidate within 1 cm. Links: just those touched",
     "are named. Claim: all are said to be located; false: some claim is more than 1 cm",
     "from every contact; off: the worst. Rank deficit: of the true contacts, by NumPy.",
@@ -98,7 +98,7 @@ def _scores(title: str, rows: Iterable[Row]) -> Table:
     second = {"One": "deter-\nmined", "Wit": "limit"}.get(title[:3], "rank\ndeficit")
     sheet = _sheet(title, ["", second])
     for column in (
-        "scenes",
+        "n",
         "exact",
         "1 cm",
         "25 cm",
