@@ -361,7 +361,7 @@ impl SeveralContacts {
             }
             return;
         }
-        if pair.misfit(&pair.wrenches(&[0.0; 6])).is_nan() {
+        if exceeds(pair.unexplained_share(), limit) {
             return;
         }
         self.search.search(scene, pair);

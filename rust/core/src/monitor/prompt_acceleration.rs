@@ -8,22 +8,33 @@
 //! tick, `c` between 1/2 and 1.
 
 use crate::observer::MomentumObserver;
+use crate::robot::Robot;
 use crate::sensor::{LaggedTorques, LoadCompensator, SensorTree};
 
-/// Each leaves the share of the error that the inertia behind the sensors has in the robot's.
+/// Each leaves the share of the error that the inertia behind the sensors has in the robot's. More follow faster contacts,
+/// and carry more of the readings' noise into the acceleration of light wrists.
 const ROUNDS: usize = 6;
+/// What a joint moves that moves nothing but what is behind sensors is for the observer to say: of the sensors' word
+/// only this share counts there, round by round, or all their noise would go into such a joint's acceleration.
+const UNDETERMINED_SHARE: f64 = 0.75;
 
 /// Workspace `(nv,)`.
 #[derive(Debug, Clone)]
 pub(super) struct PromptAcceleration {
     ahead: Vec<f64>,
+    /// Velocity variables that move nothing but what is behind sensors.
+    undetermined: Vec<bool>,
     acceleration: Vec<f64>,
 }
 
 impl PromptAcceleration {
-    /// Space for `nv` velocity variables.
-    pub fn new(nv: usize) -> Self {
-        Self { ahead: vec![0.0; nv], acceleration: vec![0.0; nv] }
+    /// Space for a robot; `tree` holds all sensors.
+    pub fn new(robot: &Robot, tree: &SensorTree) -> Self {
+        let mut undetermined = vec![false; robot.nv()];
+        for body in 1..robot.body_count() {
+            undetermined[robot.velocity_range(body)].fill(tree.at_joint(robot, body).is_some());
+        }
+        Self { ahead: vec![0.0; robot.nv()], acceleration: vec![0.0; robot.nv()], undetermined }
     }
 
     /// Corrects the observer's acceleration of its last step, and leaves the compensator and `lag` with the external
@@ -51,6 +62,11 @@ impl PromptAcceleration {
                     lag.add_ahead(sensor, &mut self.ahead);
                 }
             }
+            self.ahead
+                .iter_mut()
+                .zip(&self.undetermined)
+                .filter(|(_, open)| **open)
+                .for_each(|(ahead, _)| *ahead *= UNDETERMINED_SHARE);
             observer.respond(&self.ahead, &mut self.acceleration);
         }
         observer.set_acceleration(&self.acceleration);
