@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+import math
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
+from rich.progress import TaskID
 
 from .. import InputError
 from .._extras import MissingExtraError
@@ -89,3 +92,58 @@ def single_contacts(
         print(json.dumps(study.as_data(results), indent=2, allow_nan=False))
     else:
         Console().print(study.table(results))
+
+
+@app.command("vorndamme2017")
+def vorndamme2017(
+    singles: Annotated[int, typer.Option(help="Scenes with one contact.")] = 3000,
+    pairs: Annotated[
+        int, typer.Option(help="Scenes with two contacts (twice: by links, and by area).")
+    ] = 5000,
+    fives: Annotated[int, typer.Option(help="Scenes with five contacts.")] = 5000,
+    hits: Annotated[int, typer.Option(help="Hits over time, of the scenes with one contact.")] = 100,
+    seed: Annotated[int, typer.Option(help="Of points, forces, poses and noise.")] = 0,
+    noise: Annotated[float, typer.Option(help="Relative noise of the runs with noise.")] = 0.01,
+    cone: Annotated[
+        float, typer.Option(help="Greatest angle between force and inward normal, degrees.")
+    ] = 30.0,
+    random_poses: Annotated[bool, typer.Option("--random-poses", help="Not standing: any pose.")] = False,
+    processes: Annotated[
+        int | None, typer.Option(min=1, help="How many; the answer is the same (default: one a core).")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print all results as JSON.")] = False,
+    png: Annotated[Path | None, typer.Option(help="Folder to write pictures to.")] = None,
+) -> None:
+    """One, two and five contacts at once on Atlas, with joint torques and with force/torque sensors."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    from ..studies.vorndamme2017 import data, report, study
+
+    options = study.Options(singles, pairs, fives, hits, seed, noise, math.radians(cone), random_poses)
+    save = _picture_writer() if png is not None else None
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        stages: dict[str, TaskID] = {}
+
+        def show(stage: str, done: int, total: int) -> None:
+            if stage not in stages:
+                stages[stage] = bar.add_task(stage, total=total)
+            bar.update(stages[stage], completed=done)
+
+        result = study.run(options, processes=processes, progress=show)
+    if as_json:
+        print(json.dumps(data.as_data(result), indent=2, allow_nan=False))
+    else:
+        report.print_study(result, Console())
+    if save is not None and png is not None:
+        for path in save(result, png):
+            if not as_json:
+                print(f"Picture: {path}")
+
+
+def _picture_writer() -> Callable[[Any, Path], list[Path]]:
+    try:
+        from ..studies.vorndamme2017.plots import save_plots
+    except ModuleNotFoundError as missing:
+        raise MissingExtraError(missing.name or "matplotlib", "study") from missing
+    return save_plots

@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from ..plain import plain
 from .study import Evaluation, Study
 from .summary import Summary, most_frequent, summarise
 from .touches import EARLY, TouchResult
@@ -127,7 +128,7 @@ def as_data(study: Study) -> dict[str, Any]:
 def _evaluation_data(evaluation: Evaluation) -> dict[str, Any]:
     files = [{**asdict(log), "summary": asdict(summarise([log]))} for log in evaluation.logs]
     held_out = [log for log in evaluation.logs if not log.tuning]
-    data: dict[str, Any] = _plain(
+    data: dict[str, Any] = plain(
         {
             "settings": asdict(evaluation.settings),
             "files": files,
@@ -136,15 +137,3 @@ def _evaluation_data(evaluation: Evaluation) -> dict[str, Any]:
         }
     )
     return data
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _plain(entry) for key, entry in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(entry) for entry in value]
-    if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
-    if isinstance(value, float):
-        return float(value) if math.isfinite(value) else None
-    return value

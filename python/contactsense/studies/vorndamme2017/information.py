@@ -8,23 +8,43 @@ import numpy as np
 
 from ... import Robot
 from ..sampling import FloatArray
+from .instruments import Method, carries, sensor_links
 
 LEVER = 0.3  # [m], sets moments against forces
 RANK_TOLERANCE = 1e-7  # of the largest singular value
 
 
-def stacked_jacobian(robot: Robot, q: FloatArray, links: Sequence[str]) -> FloatArray:
-    """Jacobians of the links at their origins, one below the other `(6 n, nv)`; moments over the lever."""
-    balance = np.array([[1.0]] * 3 + [[1.0 / LEVER]] * 3)
-    return np.vstack([robot.jacobian(q, link) * balance for link in links])
+def rank_deficit(robot: Robot, q: FloatArray, links: Sequence[str], method: Method = "torques") -> int:
+    """Components of the wrenches on the links touched that the measurements leave open (eq. 31).
+
+    `6 n` minus the rank of the stacked Jacobians; with sensors, of Jacobians and sensor readings.
+    """
+    blocks = []
+    if method != "sensors":
+        blocks.append(torques_per_wrench(robot, q, links))
+    if method != "torques":
+        blocks.append(readings_per_wrench(robot, q, links, sensor_links(method)))
+    values = np.linalg.svd(np.vstack(blocks), compute_uv=False)
+    return 6 * len(links) - int(np.sum(values > RANK_TOLERANCE * values[0]))
 
 
-def rank(matrix: FloatArray) -> int:
-    """Number of singular values over a ten-millionth of the largest."""
-    values = np.linalg.svd(matrix, compute_uv=False)
-    return int(np.sum(values > RANK_TOLERANCE * values[0])) if values.size else 0
+def torques_per_wrench(robot: Robot, q: FloatArray, links: Sequence[str]) -> FloatArray:
+    """Stacked transposed Jacobians at the links' origins `(nv, 6 n)`; moments as forces at the lever."""
+    balance = np.array([1.0] * 3 + [LEVER] * 3)
+    return np.hstack([robot.jacobian(q, link).T * balance for link in links])
 
 
-def rank_deficit(robot: Robot, q: FloatArray, links: Sequence[str]) -> int:
-    """`6 n - rank` of the stacked Jacobians of the links touched (eq. 31): components left open."""
-    return 6 * len(links) - rank(stacked_jacobian(robot, q, links))
+def readings_per_wrench(
+    robot: Robot, q: FloatArray, links: Sequence[str], sensors: Sequence[str]
+) -> FloatArray:
+    """`(6 sensors, 6 n)`: what each sensor reads of each wrench, moments on both sides at the lever."""
+    readings = np.zeros((6 * len(sensors), 6 * len(links)))
+    for row, sensor in enumerate(sensors):
+        origin = robot.link_pose(q, sensor)[:3, 3]
+        for column, link in enumerate(links):
+            if carries(robot, sensor, link):
+                x, y, z = (robot.link_pose(q, link)[:3, 3] - origin) / LEVER
+                block = readings[6 * row : 6 * row + 6, 6 * column : 6 * column + 6]
+                block[:] = np.eye(6)
+                block[3:, :3] = [[0, -z, y], [z, 0, -x], [-y, x, 0]]
+    return readings

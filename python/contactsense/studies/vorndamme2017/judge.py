@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import permutations
 
@@ -49,16 +50,31 @@ class Verdict:
         return self.located_error > NEAR
 
 
+@dataclass(frozen=True)
+class Answer:
+    """One contact as reported."""
+
+    link: str
+    estimate: FloatArray  # (3,), NaN where there is none
+    force: FloatArray  # (3,), NaN where it is open
+    located: bool
+    candidates: list[FloatArray]  # each (3,), the estimate among them
+
+
 def judge(robot: Robot, scene: Scene, isolation: Isolation, deficit: int | None = None) -> Verdict:
-    """Compares an isolation with the truth; `deficit` where the scene's rank deficit is known already.
+    """Compares an isolation with the truth; `deficit` where the scene's rank deficit is known already."""
+    if deficit is None:
+        deficit = rank_deficit(robot, scene.q, scene.links)
+    return judge_answers(scene, [answer(contact) for contact in isolation.contacts], deficit)
+
+
+def judge_answers(scene: Scene, contacts: Sequence[Answer], deficit: int) -> Verdict:
+    """Compares answers with the truth.
 
     Estimates are assigned one to one, so that the worst distance is least, then their sum.
     """
-    if deficit is None:
-        deficit = rank_deficit(robot, scene.q, scene.links)
     true = np.array([touch.point for touch in scene.touches])
-    contacts = isolation.contacts
-    estimates = np.array([estimate(contact) for contact in contacts]).reshape(-1, 3)
+    estimates = np.array([contact.estimate for contact in contacts]).reshape(-1, 3)
     distances = np.linalg.norm(true[:, None] - estimates[None], axis=2)
     distances[np.isnan(distances)] = np.inf
     assigned = assign(distances)
@@ -68,8 +84,7 @@ def judge(robot: Robot, scene: Scene, isolation: Isolation, deficit: int | None 
         for touch, j in zip(scene.touches, assigned, strict=True)
     ]
     located = [index for index, contact in enumerate(contacts) if contact.located]
-    offered = [candidate.point for contact in contacts for candidate in contact.candidates]
-    offered += [contact.point for contact in contacts if np.isfinite(contact.point).all()]
+    offered = [point for contact in contacts for point in contact.candidates]
     return Verdict(
         links=scene.links,
         named=tuple(contact.link for contact in contacts),
@@ -82,11 +97,13 @@ def judge(robot: Robot, scene: Scene, isolation: Isolation, deficit: int | None 
     )
 
 
-def estimate(contact: Contact) -> FloatArray:
-    """Where a contact is said to be, if only as a guess `(3,)`: NaN if nowhere."""
-    if np.isfinite(contact.point).all() or not contact.candidates:
-        return contact.point
-    return contact.candidates[0].point
+def answer(contact: Contact) -> Answer:
+    """A contact's point, or its first candidate's where that is open, as the estimate."""
+    candidates = [candidate.point for candidate in contact.candidates]
+    if np.isfinite(contact.point).all():
+        candidates.insert(0, contact.point)
+    estimate = candidates[0] if candidates else np.full(3, np.nan)
+    return Answer(contact.link, estimate, contact.force, contact.located, candidates)
 
 
 def assign(distances: FloatArray) -> list[int | None]:

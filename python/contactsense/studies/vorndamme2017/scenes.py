@@ -78,14 +78,6 @@ def standing_pose(robot: Robot) -> FloatArray:
     return integrate(robot, robot.neutral(), np.concatenate([base, step]))
 
 
-def external_torque(robot: Robot, scene: Scene) -> FloatArray:
-    """What the pushes do to the joints: sum of `J^T f` `(nv,)`."""
-    tau = np.zeros(robot.nv)
-    for touch in scene.touches:
-        tau += robot.jacobian(scene.q, touch.link, touch.point)[:3].T @ touch.force
-    return tau
-
-
 def singles(
     robot: Robot, count: int, seed: int = 0, *, cone: float = CONE, random_poses: bool = False
 ) -> list[Scene]:

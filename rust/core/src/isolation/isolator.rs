@@ -234,6 +234,8 @@ impl ContactIsolator {
             self.identify(kinematics, None);
             return self.report_several(kinematics);
         }
+        // Two contacts without proof: more than one force only if a free base tells the sum of all.
+        let exact = exact && self.robot.floating_base();
         // Beside strong contacts that sensors see, a weak torque may be their error.
         if self.find_tips(LEFT_OVER) == 0 {
             return;
