@@ -13,6 +13,14 @@ from .settings import FloatArray
 FADING = 0.1
 
 
+def strongest(report: ContactReport) -> Contact | None:
+    """The located contact with the largest force; where none is located, the first of all, if any."""
+    located = [contact for contact in report.contacts if contact.located]
+    if located:
+        return max(located, key=lambda contact: float(np.linalg.norm(contact.force)))
+    return report.contacts[0] if report.contacts else None
+
+
 class HitScorer:
     """Watches the ticks of one hit."""
 
@@ -20,6 +28,7 @@ class HitScorer:
         self, robot: Robot, push: Push, number: int, threshold: FloatArray, idle_q: FloatArray
     ) -> None:
         self._robot, self._push, self._number, self._threshold = robot, push, number, threshold
+        self._elsewhere = 0
         self._delay: float | None = None
         self._strength = 0.0
         self._time: float | None = None
@@ -41,11 +50,12 @@ class HitScorer:
             return
         if self._delay is None:
             self._delay = time - self._push.start
-        strength = float(np.linalg.norm(report.external_torque / self._threshold))
+        self._elsewhere += any(contact.link != self._push.link for contact in report.contacts)
+        strength = float(np.linalg.norm(report.collision_torque / self._threshold))
         # Detection holds for some time after the last signal; isolation answers only to a present one.
         if report.contacts and strength > self._strength:
             self._strength, self._time, self._q = strength, time, q.copy()
-            self._contact = report.contacts[0]
+            self._contact = strongest(report)
 
     def result(self) -> HitResult:
         """The score."""
@@ -77,4 +87,5 @@ class HitScorer:
             true_force=true_force,
             point=point,
             estimated_force=force,
+            elsewhere=self._elsewhere,
         )
