@@ -14,8 +14,8 @@ import pytest
 import contactsense as cs
 
 ROOT = Path(__file__).resolve().parents[1]
-PEERS = ("trimesh", "embreex", "igl", "fcpw")
-LEAST = {"observer": 2, "monitor": 6, "closest": 2, "rays": 2}
+PEERS = ("trimesh", "embreex", "igl", "fcpw", "idyntree")
+LEAST = {"observer": 2, "compensation": 2, "monitor": 6, "closest": 2, "rays": 2}
 
 
 def run(*arguments: str) -> subprocess.CompletedProcess[str]:
@@ -37,7 +37,13 @@ def report() -> dict:
 
 @pytest.mark.parametrize("name", sorted(LEAST))
 def test_every_comparison_times_ours_beside_peers(report: dict, name: str) -> None:
-    starts = {"observer": "observer", "monitor": "monitor", "closest": "closest point", "rays": "all hits"}
+    starts = {
+        "observer": "observer",
+        "compensation": "compensation",
+        "monitor": "monitor",
+        "closest": "closest point",
+        "rays": "all hits",
+    }
     found = [c for c in report["comparisons"] if c["task"].startswith(starts[name])]
     assert len(found) >= LEAST[name]
     for comparison in found:
@@ -58,4 +64,4 @@ def test_report_names_the_machine_and_versions(report: dict) -> None:
 def test_unknown_comparison_is_refused() -> None:
     done = run("nothing")
     assert done.returncode == 2
-    assert "observer, monitor, closest, rays" in done.stderr
+    assert "observer, compensation, monitor, closest, rays" in done.stderr

@@ -15,7 +15,9 @@ __all__ = [
     "ContactIsolator",
     "ContactMonitor",
     "ContactReport",
+    "ForceTorqueSensor",
     "Isolation",
+    "LoadCompensator",
     "MomentumObserver",
     "RayHits",
     "Robot",
@@ -140,6 +142,33 @@ class MomentumObserver:
     def acceleration(self) -> NDArray[np.float64]: ...
 
 @final
+class ForceTorqueSensor:
+    def __new__(
+        cls,
+        name: str,
+        link: str,
+        *,
+        pose: ArrayLike | None = None,
+        convention: Literal["load", "support"] = "load",
+    ) -> Self: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def link(self) -> str: ...
+    @property
+    def pose(self) -> NDArray[np.float64]: ...
+    @property
+    def convention(self) -> Literal["load", "support"]: ...
+    def __hash__(self) -> int: ...
+
+@final
+class LoadCompensator:
+    def __new__(cls, robot: Robot, sensors: Iterable[ForceTorqueSensor]) -> Self: ...
+    def update(
+        self, q: ArrayLike, v: ArrayLike, a: ArrayLike, wrenches: ArrayLike
+    ) -> NDArray[np.float64]: ...
+
+@final
 class ContactIsolator:
     def __new__(
         cls,
@@ -203,8 +232,11 @@ class ContactMonitor:
         robot: Robot,
         *,
         dt: float,
+        sensors: Iterable[ForceTorqueSensor] | None = None,
+        wanted_contacts: Iterable[str] | None = None,
         observer_gain: ArrayLike | None = None,
         torque_threshold: ArrayLike | None = None,
+        wrench_threshold: ArrayLike | None = None,
         bias_time_constant: float | None = None,
         bias_settle_time: float | None = None,
         hold_time: float | None = None,
@@ -212,7 +244,13 @@ class ContactMonitor:
         pushing: bool = True,
     ) -> Self: ...
     def update(
-        self, q: ArrayLike, v: ArrayLike, tau: ArrayLike, *, friction: ArrayLike | None = None
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        tau: ArrayLike,
+        wrenches: ArrayLike | None = None,
+        *,
+        friction: ArrayLike | None = None,
     ) -> ContactReport: ...
     def reset(self) -> None: ...
 
@@ -228,6 +266,14 @@ class ContactReport:
     def links(self) -> tuple[str, ...]: ...
     @property
     def external_torque(self) -> NDArray[np.float64]: ...
+    @property
+    def collision_torque(self) -> NDArray[np.float64]: ...
+    @property
+    def wrenches(self) -> NDArray[np.float64]: ...
+    @property
+    def sensors_left_out(self) -> tuple[str, ...]: ...
+    @property
+    def joints_left_out(self) -> tuple[str, ...]: ...
     @property
     def acceleration(self) -> NDArray[np.float64]: ...
     @property

@@ -11,7 +11,8 @@ from ..errors import InputError, ModelError
 from .coal import shape_of
 from .description import GeometryTuple, LinkTuple, RobotDescription, check_finite
 from .inertia import check_bodies, check_inertias, check_mass_matrix
-from .pinocchio_model import is_body, joints_of, links_of
+from .pinocchio_links import is_body, links_of
+from .pinocchio_model import joints_of
 
 
 def describe_pinocchio(model: Any, geometry_model: Any) -> RobotDescription:
@@ -44,31 +45,28 @@ def describe_pinocchio(model: Any, geometry_model: Any) -> RobotDescription:
 
 
 def _links(model: Any, geometry_model: Any) -> tuple[list[LinkTuple], list[str]]:
-    links = dict(links_of(model))
-    unnamed: dict[int, LinkTuple] = {}
+    frames: list[int | None] = []
     for shape in geometry_model.geometryObjects:
         if shape.parentJoint >= model.njoints:
             raise InputError(
                 f"geometry_model was not built for this model: '{shape.name}' sits at no joint of it"
             )
-        frame = _body_frame(model, shape)
+        frames.append(_body_frame(model, shape))
+    shapes = list(zip(geometry_model.geometryObjects, frames, strict=True))
+    bare = dict.fromkeys(int(shape.parentJoint) for shape, frame in shapes if frame is None)
+    links, unnamed, warnings = links_of(model, bare)
+    for shape, frame in shapes:
         if frame is None:
-            name = str(model.names[shape.parentJoint])
-            link = unnamed.setdefault(
-                shape.parentJoint, LinkTuple(name, int(shape.parentJoint), np.eye(4), [])
-            )
-            placement = shape.placement
+            link, placement = unnamed[shape.parentJoint], shape.placement
         else:
             link = links[frame]
             placement = model.frames[frame].placement.actInv(shape.placement)
         kind, params = shape_of(shape.geometry, shape.name, mirrored=bool(np.prod(shape.meshScale) < 0.0))
         link.geometry.append(GeometryTuple(kind, params, np.array(placement.homogeneous, dtype=np.float64)))
-    if not unnamed:
-        return list(links.values()), []
-    names = ", ".join(f"'{link.name}'" for link in unnamed.values())
-    return [*links.values(), *unnamed.values()], [
-        f"Links named after their joints for want of BODY frames: {names}"
-    ]
+    if unnamed:
+        names = ", ".join(f"'{link.name}'" for link in unnamed.values())
+        warnings.append(f"Links named after their joints for want of BODY frames: {names}")
+    return [*links.values(), *unnamed.values()], warnings
 
 
 def _body_frame(model: Any, shape: Any) -> int | None:

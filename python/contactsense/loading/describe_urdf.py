@@ -19,7 +19,8 @@ from .inertia import check_bodies, check_inertias, check_mass_matrix
 from .locked import LockedJoints, lock_joints
 from .meshes import MeshFinder, PackageDirs
 from .oddities import oddities
-from .pinocchio_model import joints_of, links_of
+from .pinocchio_links import links_of
+from .pinocchio_model import joints_of
 from .shapes import link_shapes
 from .urdf_tree import UrdfTree, read_urdf
 
@@ -60,12 +61,19 @@ def describe_urdf(
     full = _kinematics(tree, floating_base)
     model, lock_warnings = lock_joints(full, tree, locked_joints)
     joints = joints_of(model)
-    placed = {link.name: link for _, link in links_of(model)}
+    placed = {link.name: link for link in links_of(model)[0].values()}
     links = []
-    for _, link in links_of(full):
+    for link in links_of(full)[0].values():
         name = link.name.removeprefix(_LINK)
-        shapes = link_shapes(tree.links[name].element, name, geometry, meshes)
-        links.append(placed[link.name]._replace(name=name, geometry=shapes))
+        # Links and parents as they are without locked joints; only where they sit differs.
+        links.append(
+            link._replace(
+                name=name,
+                joint=placed[link.name].joint,
+                placement=placed[link.name].placement,
+                geometry=link_shapes(tree.links[name].element, name, geometry, meshes),
+            )
+        )
     check_finite(joints, links)
     check_bodies(joints, links)
     warnings += lock_warnings + check_mass_matrix(model) + _no_surface(links, geometry)

@@ -54,6 +54,10 @@ class LinkTuple(NamedTuple):
     name: str
     joint: int  # 0 = world, k = k-th joint
     placement: FloatArray  # (4, 4), in the joint's frame
+    parent: int | None  # position of the link that its joint, fixed or moving, hangs from; None for the root
+    mass: float  # its own: of the joint's body, the part that is this link's
+    com: FloatArray  # (3,), in the link's frame
+    inertia: FloatArray  # (3, 3), about the centre of mass
     geometry: list[GeometryTuple]
 
 
@@ -73,7 +77,8 @@ def check_finite(joints: list[JointTuple], links: list[LinkTuple]) -> None:
     for joint in joints:
         _require_finite(f"joint '{joint.name}'", *joint[3:9])
     for link in links:
-        _require_finite(f"link '{link.name}'", link.placement, *(shape.placement for shape in link.geometry))
+        own = (link.placement, link.mass, link.com, link.inertia)
+        _require_finite(f"link '{link.name}'", *own, *(shape.placement for shape in link.geometry))
 
 
 def name_list(names: list[str], limit: int = 12) -> str:

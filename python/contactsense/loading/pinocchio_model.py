@@ -1,4 +1,4 @@
-"""Joints and link frames of a Pinocchio model as plain arrays."""
+"""Joints of a Pinocchio model as plain arrays."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ModelError
-from .description import SUPPORTED_JOINTS, FloatArray, JointKind, JointTuple, LinkTuple
+from .description import SUPPORTED_JOINTS, FloatArray, JointKind, JointTuple
 
 _KINDS: dict[str, JointKind] = {
     "JointModelFreeFlyer": "free_flyer",
@@ -25,20 +25,6 @@ _UNLIMITED = 1e300
 def joints_of(model: Any) -> list[JointTuple]:
     """Every joint but the universe, in the model's order; `ModelError` names an unsupported joint."""
     return [_joint(model, index) for index in range(1, model.njoints)]
-
-
-def links_of(model: Any) -> list[tuple[int, LinkTuple]]:
-    """(frame index, link without shapes) of every BODY frame, in the model's order."""
-    return [
-        (index, LinkTuple(frame.name, int(frame.parentJoint), _pose(frame.placement), []))
-        for index, frame in enumerate(model.frames)
-        if is_body(frame)
-    ]
-
-
-def is_body(frame: Any) -> bool:
-    """Whether a frame is a link's."""
-    return str(frame.type) == "BODY"
 
 
 def _pose(placement: Any) -> FloatArray:

@@ -37,16 +37,16 @@ fn tick(c: &mut Criterion) {
         let rest = vec![0.0; robot.nv()];
         let tau = robot.inverse_dynamics(&q, &rest, &rest).expect("valid input");
         let options = MonitorOptions {
-            dt: 1e-3,
             observer_gain: vec![50.0],
             isolation: IsolatorOptions::default(),
             hold_time: 0.02,
             bias_time_constant: None,
             bias_settle_time: None,
+            ..MonitorOptions::new(1e-3)
         };
         let mut monitor = ContactMonitor::new(robot, &options).expect("valid settings");
         group.bench_function(name, |b| {
-            b.iter(|| monitor.update(black_box(&q), &rest, &tau, None).expect("valid input"))
+            b.iter(|| monitor.update(black_box(&q), &rest, &tau, None, None).expect("valid input"))
         });
         assert!(!monitor.report().collision);
     }

@@ -8,6 +8,7 @@ pub mod isolation;
 pub mod monitor;
 pub mod observer;
 pub mod robot;
+pub mod sensor;
 pub mod spatial;
 pub mod surface;
 mod xml_nesting;

@@ -102,12 +102,12 @@ fn a_tick_allocates_nothing() {
         assert!(located > 0 && open > 0, "both branches are run: {located}, {open}");
 
         let options = MonitorOptions {
-            dt: 1e-3,
             observer_gain: vec![500.0],
             isolation: IsolatorOptions { torque_threshold: vec![0.01], ..IsolatorOptions::default() },
             hold_time: 0.01,
             bias_time_constant: Some(0.02),
             bias_settle_time: Some(5.0),
+            ..MonitorOptions::new(1e-3)
         };
         let mut monitor = ContactMonitor::new(robot.clone(), &options).expect("valid options");
         let weight = robot.inverse_dynamics(&q, &still, &still).expect("valid input");
@@ -119,7 +119,7 @@ fn a_tick_allocates_nothing() {
                 tau.iter_mut().zip(torque).for_each(|(tau, ext)| *tau -= ext);
             }
             let before = ALLOCATIONS.load(Ordering::Relaxed);
-            monitor.update(&q, &still, &tau, None).expect("valid input");
+            monitor.update(&q, &still, &tau, None, None).expect("valid input");
             let after = ALLOCATIONS.load(Ordering::Relaxed);
             monitor.report_into(&mut report);
             seen += usize::from(!report.isolation.contacts.is_empty());

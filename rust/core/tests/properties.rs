@@ -30,12 +30,12 @@ fn sensible(values: &[f64], length: usize) -> bool {
 
 fn options() -> MonitorOptions {
     MonitorOptions {
-        dt: 1e-3,
         observer_gain: vec![500.0],
         isolation: IsolatorOptions { torque_threshold: vec![0.1], ..IsolatorOptions::default() },
         hold_time: 0.01,
         bias_time_constant: Some(0.003),
         bias_settle_time: None,
+        ..MonitorOptions::new(1e-3)
     }
 }
 
@@ -94,7 +94,7 @@ proptest! {
             monitor.report_into(&mut report);
             let before = report.clone();
             let good = sensible(&v, 7) && sensible(&tau, 7);
-            match monitor.update(&q, &v, &tau, None) {
+            match monitor.update(&q, &v, &tau, None, None) {
                 Ok(()) => prop_assert!(good),
                 Err(error) => {
                     prop_assert!(!good && matches!(error, Error::Input(_)), "{error}");

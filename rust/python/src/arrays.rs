@@ -45,6 +45,30 @@ impl<'py> Vector<'py> {
     }
 }
 
+/// Sensor readings `(n, 6)`; NaN, for no reading, is let through.
+pub struct Readings<'py>(PyReadonlyArray2<'py, f64>);
+
+impl<'py> Readings<'py> {
+    pub fn new(object: &Bound<'py, PyAny>) -> PyResult<Self> {
+        let wrong = || input(object.py(), "wrenches: expected an array of shape (n_sensors, 6)".into());
+        let array = match object.cast::<PyArray2<f64>>() {
+            Ok(array) if array.readonly().as_slice().is_ok() => array.clone(),
+            _ => convert("wrenches", object)?.cast_into().map_err(|_| wrong())?,
+        };
+        let view = array.readonly();
+        if view.shape()[1] == 6 {
+            Ok(Self(view))
+        } else {
+            Err(wrong())
+        }
+    }
+
+    pub fn rows(&self) -> &[[f64; 6]] {
+        // Contiguous by construction.
+        self.0.as_slice().unwrap_or(&[]).as_chunks().0
+    }
+}
+
 /// A real number; NaN, which the core refuses by name, for anything else.
 #[derive(Clone, Copy)]
 pub struct Number(pub f64);

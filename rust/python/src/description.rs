@@ -23,7 +23,8 @@ fn square(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Matrix3<f64>> {
     }
 }
 
-fn placement(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Pose> {
+/// A `(4, 4)` pose.
+pub fn placement(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Pose> {
     match rows::<4>(name, object)?.as_slice() {
         [a, b, c, _] => Ok(Pose {
             rotation: Matrix3::new(a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]),
@@ -99,12 +100,16 @@ fn part(link: &str, tuple: &Bound<'_, PyTuple>) -> PyResult<Part> {
 fn link(tuple: &Bound<'_, PyTuple>) -> PyResult<LinkDescription> {
     let name: String = tuple.get_item(0)?.extract()?;
     let mut geometry = vec![];
-    for item in tuple.get_item(3)?.try_iter()? {
+    for item in tuple.get_item(7)?.try_iter()? {
         geometry.push(part(&name, item?.cast::<PyTuple>()?)?);
     }
     Ok(LinkDescription {
         joint: tuple.get_item(1)?.extract()?,
         placement: placement("placement", &tuple.get_item(2)?)?,
+        parent: tuple.get_item(3)?.extract()?,
+        mass: tuple.get_item(4)?.extract()?,
+        com: vector("com", &tuple.get_item(5)?)?,
+        inertia: square("inertia", &tuple.get_item(6)?)?,
         geometry,
         name,
     })

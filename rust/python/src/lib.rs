@@ -5,12 +5,14 @@
 use pyo3::prelude::*;
 
 mod arrays;
+mod compensator;
 mod description;
 mod errors;
 mod isolator;
 mod monitor;
 mod observer;
 mod robot;
+mod sensor;
 mod surface;
 mod urdf;
 
@@ -25,6 +27,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<surface::RayHits>()?;
     module.add_class::<surface::SurfaceSamples>()?;
     module.add_class::<observer::PyMomentumObserver>()?;
+    module.add_class::<sensor::PyForceTorqueSensor>()?;
+    module.add_class::<compensator::PyLoadCompensator>()?;
     module.add_class::<isolator::PyContactIsolator>()?;
     module.add_class::<isolator::PyIsolation>()?;
     module.add_class::<isolator::PyContact>()?;

@@ -2,23 +2,24 @@
 
 use std::sync::Arc;
 
-use contactsense::isolation::IsolatorOptions;
 use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
 use contactsense::robot::Robot;
-use numpy::PyArray1;
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyString, PyTuple};
 
-use crate::arrays::{Number, Vector};
-use crate::errors::to_python;
+use crate::arrays::{from_rows, rows, Number, Readings, Vector};
+use crate::errors::{input, to_python};
 use crate::isolator::{contact_count, contacts, names};
 use crate::observer::scalar_or_vector;
 use crate::robot::PyRobot;
+use crate::sensor::sensors;
 
 /// What the monitor says of one tick.
 #[pyclass(frozen, name = "ContactReport", module = "contactsense._core")]
 pub struct PyContactReport {
     robot: Arc<Robot>,
+    sensors: Arc<[String]>,
     report: ContactReport,
 }
 
@@ -42,16 +43,44 @@ impl PyContactReport {
         self.report.onset
     }
 
-    /// Links that detection alone names: on every branch those between the last joint over its threshold and the next.
+    /// Links that detection alone names: on every branch those between the last joint or sensor over its threshold and
+    /// the next.
     #[getter]
     fn links<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         names(py, &self.robot, &self.report.links)
     }
 
-    /// `(nv,)` [Nm, N], free of the tracked bias.
+    /// Of all contacts, `(nv,)` [Nm, N], free of the tracked bias.
     #[getter]
     fn external_torque<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.report.external_torque)
+    }
+
+    /// `external_torque` without wanted contacts, `(nv,)` [Nm, N]; zero at joints that are left out.
+    #[getter]
+    fn collision_torque<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.report.collision_torque)
+    }
+
+    /// The external wrench that each sensor sees, `(n_sensors, 6)` [N, Nm]: on the robot, world axes, at the sensor's
+    /// origin; NaN where a sensor is left out.
+    #[getter]
+    fn wrenches<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        from_rows(py, self.report.wrenches.iter().map(|wrench| (*wrench).into()))
+    }
+
+    /// Names of the sensors without a reading in this tick.
+    #[getter]
+    fn sensors_left_out<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.report.sensors_left_out.iter().map(|sensor| &self.sensors[*sensor]))
+    }
+
+    /// Names of the joints whose torques say nothing of a collision, since a wanted contact loads them unmeasured: those
+    /// behind its sensor, and while that gives no reading (and a little after) those between it and the base.
+    #[getter]
+    fn joints_left_out<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let joints = self.robot.joint_names();
+        PyTuple::new(py, self.report.joints_left_out.iter().map(|joint| &joints[*joint]))
     }
 
     /// Estimated acceleration, `(nv,)`.
@@ -76,73 +105,117 @@ impl PyContactReport {
     }
 }
 
-/// The sense of touch of one robot, called once a control tick: observer, bias, detection, isolation.
+/// The sense of touch of one robot, called once a control tick: observer, compensation, bias, detection, isolation.
 ///
-/// `dt`: time between two calls [s]. `observer_gain`: scalar or `(nv,)` [1/s], default 50. `torque_threshold`: scalar
+/// `dt`: time between two calls [s]. `sensors`: of `ForceTorqueSensor`, in the order of the readings; `wanted_contacts`:
+/// names of those whose contacts are meant (feet, hands): what touches behind them is no collision. `wrench_threshold`, on
+/// external wrenches: a scalar, `(6,)`, or `(n_sensors, 6)` [N, Nm], default 2. `observer_gain`: scalar or `(nv,)` [1/s], default 50. `torque_threshold`: scalar
 /// or `(nv,)` [Nm, N], default 0.5. `bias_time_constant` [s]: tracks the torque that a model's errors feign while
 /// nothing touches; the first time constant is taken as free of contact. `hold_time` [s], default 0.02: a signal stays on so
 /// long after it was last over its threshold. `max_contacts`, `pushing`: as in `ContactIsolator`. Raises `InputError` that
 /// names the argument.
 #[pyclass(name = "ContactMonitor", module = "contactsense._core")]
-pub struct PyContactMonitor(ContactMonitor);
+pub struct PyContactMonitor {
+    monitor: ContactMonitor,
+    sensors: Arc<[String]>,
+}
 
 #[pymethods]
 impl PyContactMonitor {
     #[new]
-    #[pyo3(signature = (robot, *, dt, observer_gain=None, torque_threshold=None, bias_time_constant=None,
-                        bias_settle_time=None, hold_time=None, max_contacts=None, pushing=true))]
+    #[pyo3(signature = (robot, *, dt, sensors=None, wanted_contacts=None, observer_gain=None, torque_threshold=None,
+                        wrench_threshold=None, bias_time_constant=None, bias_settle_time=None, hold_time=None, max_contacts=None, pushing=true))]
     #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
         robot: &Bound<'_, PyRobot>,
         dt: Number,
+        sensors: Option<&Bound<'_, PyAny>>,
+        wanted_contacts: Option<&Bound<'_, PyAny>>,
         observer_gain: Option<&Bound<'_, PyAny>>,
         torque_threshold: Option<&Bound<'_, PyAny>>,
+        wrench_threshold: Option<&Bound<'_, PyAny>>,
         bias_time_constant: Option<Number>,
         bias_settle_time: Option<Number>,
         hold_time: Option<Number>,
         max_contacts: Option<&Bound<'_, PyAny>>,
         pushing: bool,
     ) -> PyResult<Self> {
-        let or_default = |name, object: Option<&Bound<'_, PyAny>>, default| {
-            object.map_or(Ok(vec![default]), |object| scalar_or_vector(name, object))
-        };
-        let options = MonitorOptions {
-            dt: dt.0,
-            observer_gain: or_default("observer_gain", observer_gain, 50.0)?,
-            isolation: IsolatorOptions {
-                torque_threshold: or_default("torque_threshold", torque_threshold, 0.5)?,
-                max_contacts: contact_count(max_contacts)?,
-                pushing,
-            },
-            hold_time: hold_time.map_or(0.02, |number| number.0),
-            bias_time_constant: bias_time_constant.map(|number| number.0),
-            bias_settle_time: bias_settle_time.map(|number| number.0),
-        };
+        let mut options = MonitorOptions::new(dt.0);
+        if let Some(gain) = observer_gain {
+            options.observer_gain = scalar_or_vector("observer_gain", gain)?;
+        }
+        if let Some(threshold) = torque_threshold {
+            options.isolation.torque_threshold = scalar_or_vector("torque_threshold", threshold)?;
+        }
+        if let Some(threshold) = wrench_threshold {
+            options.wrench_threshold = wrench_thresholds(threshold)?;
+        }
+        options.isolation.max_contacts = contact_count(max_contacts)?;
+        options.isolation.pushing = pushing;
+        if let Some(hold_time) = hold_time {
+            options.hold_time = hold_time.0;
+        }
+        options.bias_time_constant = bias_time_constant.map(|number| number.0);
+        options.bias_settle_time = bias_settle_time.map(|number| number.0);
+        if let Some(sensors) = sensors {
+            options.sensors = self::sensors(sensors)?;
+        }
+        if let Some(wanted) = wanted_contacts {
+            options.wanted_contacts = sensor_names(wanted)?;
+        }
         let monitor = ContactMonitor::new(robot.get().0.clone(), &options);
-        Ok(Self(monitor.map_err(|error| to_python(robot.py(), error))?))
+        let monitor = monitor.map_err(|error| to_python(robot.py(), error))?;
+        Ok(Self { sensors: monitor.sensor_names().into(), monitor })
     }
 
     /// One tick: `q` `(nq,)`, `v` `(nv,)`, `tau` and `friction` `(nv,)` or `(nv - 6,)` for a floating base.
     ///
-    /// Raises `InputError` that names the argument; the state is then unchanged.
-    #[pyo3(signature = (q, v, tau, *, friction=None))]
+    /// `wrenches` `(n_sensors, 6)`: the sensors' readings, sensor axes [N, Nm]; a NaN in one leaves its sensor out for this
+    /// tick. Raises `InputError` that names the argument; the state is then unchanged.
+    #[pyo3(signature = (q, v, tau, wrenches=None, *, friction=None))]
     fn update(
         &mut self,
         py: Python<'_>,
         q: &Bound<'_, PyAny>,
         v: &Bound<'_, PyAny>,
         tau: &Bound<'_, PyAny>,
+        wrenches: Option<&Bound<'_, PyAny>>,
         friction: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyContactReport> {
         let (q, v, tau) = (Vector::new("q", q)?, Vector::new("v", v)?, Vector::new("tau", tau)?);
         let friction = Vector::optional("friction", friction)?;
         let friction = friction.as_ref().map(|friction| friction.slice());
-        self.0.update(q.slice(), v.slice(), tau.slice(), friction).map_err(|error| to_python(py, error))?;
-        Ok(PyContactReport { robot: self.0.robot().clone(), report: self.0.report() })
+        let wrenches = wrenches.map(Readings::new).transpose()?;
+        let wrenches = wrenches.as_ref().map(|wrenches| wrenches.rows());
+        let done = self.monitor.update(q.slice(), v.slice(), tau.slice(), friction, wrenches);
+        done.map_err(|error| to_python(py, error))?;
+        let report = self.monitor.report();
+        Ok(PyContactReport { robot: self.monitor.robot().clone(), sensors: self.sensors.clone(), report })
     }
 
     /// Forgets all ticks, the bias too.
     fn reset(&mut self) {
-        self.0.reset();
+        self.monitor.reset();
     }
+}
+
+/// A scalar, or rows of six.
+fn wrench_thresholds(object: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    match object.extract::<f64>() {
+        Ok(number) => Ok(vec![number]),
+        Err(_) => Ok(rows::<6>("wrench_threshold", object)?.concat()),
+    }
+}
+
+fn sensor_names(object: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
+    let refused =
+        || input(object.py(), "wanted_contacts: expected an iterable of the names of sensors".into());
+    if object.is_instance_of::<PyString>() {
+        return Err(refused());
+    }
+    let mut names = vec![];
+    for item in object.try_iter().map_err(|_| refused())? {
+        names.push(item?.extract().map_err(|_| refused())?);
+    }
+    Ok(names)
 }

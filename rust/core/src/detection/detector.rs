@@ -2,10 +2,13 @@
 
 use std::sync::Arc;
 
-use super::tips::TipSearch;
+use nalgebra::Vector6;
+
+use super::signal_tree::{Signal, SignalTree};
 use crate::error::{Error, Result};
 use crate::robot::configuration::check_vector;
 use crate::robot::Robot;
+use crate::sensor::{is_known, SensorTree};
 
 /// Element-wise thresholds; a signal stays on for a hold time after it was last over its threshold.
 #[derive(Debug, Clone)]
@@ -13,9 +16,13 @@ pub struct Detector {
     robot: Arc<Robot>,
     threshold: Vec<f64>,
     hold_time: f64,
-    /// Time left until a signal goes off [s].
+    /// Time left until a joint's signal goes off [s].
     remaining: Vec<f64>,
-    tips: TipSearch,
+    /// Per sensor.
+    wrench_threshold: Vec<Vector6<f64>>,
+    wrench_remaining: Vec<f64>,
+    is_known: Vec<bool>,
+    tree: SignalTree,
     links: Vec<usize>,
     collision: bool,
     onset: bool,
@@ -28,6 +35,22 @@ impl Detector {
     /// # Errors
     /// [`Error::Input`] names the argument.
     pub fn new(robot: Arc<Robot>, threshold: &[f64], hold_time: f64) -> Result<Self> {
+        let sensors = SensorTree::new(&robot, &[])?;
+        Self::with_sensors(robot, threshold, &sensors, &[1.0], hold_time)
+    }
+
+    /// The same with sensors, and a threshold on their wrenches: one number for all [N, Nm], six for each sensor, or
+    /// six times the number of sensors.
+    ///
+    /// # Errors
+    /// [`Error::Input`] names the argument.
+    pub fn with_sensors(
+        robot: Arc<Robot>,
+        threshold: &[f64],
+        sensors: &SensorTree,
+        wrench_threshold: &[f64],
+        hold_time: f64,
+    ) -> Result<Self> {
         let threshold = check_threshold(&robot, threshold)?;
         if !(hold_time.is_finite() && hold_time >= 0.0) {
             return Err(Error::Input(format!(
@@ -36,7 +59,10 @@ impl Detector {
         }
         Ok(Self {
             remaining: vec![-1.0; robot.nv()],
-            tips: TipSearch::new(&robot),
+            wrench_threshold: check_wrench_threshold(sensors, wrench_threshold)?,
+            wrench_remaining: vec![-1.0; sensors.len()],
+            is_known: vec![true; sensors.len()],
+            tree: SignalTree::new(&robot, sensors),
             links: Vec::with_capacity(robot.touchable_links().len()),
             robot,
             threshold,
@@ -48,6 +74,12 @@ impl Detector {
 
     /// One tick of `dt` [s] with the external torque `(nv,)`; true while there is a contact.
     pub fn update(&mut self, external_torque: &[f64], dt: f64) -> bool {
+        self.update_sensed(external_torque, &[], dt)
+    }
+
+    /// The same with the external wrenches that the sensors see, NaN where one is left out. A sensor over its
+    /// threshold says that the contact is behind it, one under it that it is not.
+    pub fn update_sensed(&mut self, external_torque: &[f64], wrenches: &[Vector6<f64>], dt: f64) -> bool {
         let before = self.collision;
         self.collision = false;
         for ((remaining, threshold), torque) in
@@ -56,18 +88,33 @@ impl Detector {
             *remaining = if torque.abs() > *threshold { self.hold_time } else { *remaining - dt };
             self.collision |= *remaining >= 0.0;
         }
-        self.onset = self.collision && !before;
-        self.links.clear();
-        let remaining = &self.remaining;
-        for &body in self.tips.find(&self.robot, |k| remaining[k] >= 0.0) {
-            self.links.extend_from_slice(self.robot.links_of_body(body));
+        for (sensor, wrench) in wrenches.iter().enumerate() {
+            let over = self.is_wrench_over(sensor, wrench);
+            let remaining = &mut self.wrench_remaining[sensor];
+            *remaining = if over { self.hold_time } else { *remaining - dt };
+            self.collision |= *remaining >= 0.0;
+            self.is_known[sensor] = is_known(wrench);
         }
+        self.onset = self.collision && !before;
+        let Self { robot, tree, remaining, wrench_remaining, is_known, links, .. } = self;
+        let over = |signal| match signal {
+            Signal::Joint { body } => robot.velocity_range(body).any(|k| remaining[k] >= 0.0),
+            Signal::Sensor(sensor) => wrench_remaining[sensor] >= 0.0,
+        };
+        tree.region(over, |sensor| !is_known[sensor], links);
         self.collision
+    }
+
+    /// Whether a sensor's external wrench is over its threshold in any component.
+    pub fn is_wrench_over(&self, sensor: usize, wrench: &Vector6<f64>) -> bool {
+        wrench.iter().zip(&self.wrench_threshold[sensor]).any(|(value, threshold)| value.abs() > *threshold)
     }
 
     /// Forgets all signals.
     pub fn reset(&mut self) {
         self.remaining.fill(-1.0);
+        self.wrench_remaining.fill(-1.0);
+        self.is_known.fill(true);
         self.links.clear();
         self.collision = false;
         self.onset = false;
@@ -105,4 +152,22 @@ pub(crate) fn check_threshold(robot: &Robot, threshold: &[f64]) -> Result<Vec<f6
         return Err(Error::Input("torque_threshold: must be positive [Nm]".into()));
     }
     Ok(threshold)
+}
+
+/// One threshold for all components of all sensors, six for each sensor, or six times the number of sensors.
+pub(crate) fn check_wrench_threshold(sensors: &SensorTree, threshold: &[f64]) -> Result<Vec<Vector6<f64>>> {
+    if threshold.iter().any(|x| !(x.is_finite() && *x > 0.0)) {
+        return Err(Error::Input("wrench_threshold: must be positive and finite [N, Nm]".into()));
+    }
+    match threshold.len() {
+        1 => Ok(vec![Vector6::repeat(threshold[0]); sensors.len()]),
+        6 => Ok(vec![Vector6::from_column_slice(threshold); sensors.len()]),
+        count if count == 6 * sensors.len() && count > 0 => {
+            Ok(threshold.chunks_exact(6).map(Vector6::from_column_slice).collect())
+        }
+        count => Err(Error::Input(format!(
+            "wrench_threshold: expected one number, 6, or shape ({}, 6), got {count} numbers",
+            sensors.len()
+        ))),
+    }
 }

@@ -1,6 +1,7 @@
 //! Detection: is there a contact, and behind which joints (Vorndamme 2017, eq. 21).
 
 mod detector;
+mod signal_tree;
 mod tips;
 
 pub(crate) use detector::check_threshold;

@@ -4,11 +4,15 @@ use std::sync::Arc;
 
 use super::bias::BiasTracker;
 use super::release::ReleaseDetector;
+use super::sensing::Sensing;
+use nalgebra::Vector6;
+
 use crate::detection::Detector;
 use crate::error::{Error, Result};
 use crate::isolation::{ContactIsolator, Isolation, IsolatorOptions};
 use crate::observer::MomentumObserver;
 use crate::robot::Robot;
+use crate::sensor::{is_known, ForceTorqueSensor, LoadCompensator};
 
 /// Settings of a [`ContactMonitor`].
 #[derive(Debug, Clone)]
@@ -23,9 +27,32 @@ pub struct MonitorOptions {
     pub hold_time: f64,
     /// Time constant of the bias that is tracked while nothing touches [s]; none for no tracking.
     pub bias_time_constant: Option<f64>,
+    /// Force/torque sensors, in the order of the readings.
+    pub sensors: Vec<ForceTorqueSensor>,
+    /// Names of the sensors whose contacts are meant (feet, hands): what touches behind them is no collision.
+    pub wanted_contacts: Vec<String>,
+    /// On external wrenches: one number, 6 for every sensor, or 6 times the number of sensors [N, Nm].
+    pub wrench_threshold: Vec<f64>,
     /// With bias tracking: a torque that stands still for this long is no contact, whatever its size [s]; none: a
     /// contact may last for ever.
     pub bias_settle_time: Option<f64>,
+}
+
+impl MonitorOptions {
+    /// The defaults, for calls every `dt` [s].
+    pub fn new(dt: f64) -> Self {
+        Self {
+            dt,
+            observer_gain: vec![50.0],
+            isolation: IsolatorOptions { torque_threshold: vec![0.5], ..IsolatorOptions::default() },
+            hold_time: 0.02,
+            bias_time_constant: None,
+            bias_settle_time: None,
+            sensors: vec![],
+            wanted_contacts: vec![],
+            wrench_threshold: vec![2.0],
+        }
+    }
 }
 
 /// What the monitor says of one tick.
@@ -39,8 +66,17 @@ pub struct ContactReport {
     pub onset: bool,
     /// Region that detection alone gives: indices into [`Robot::links`].
     pub links: Vec<usize>,
-    /// Bias-free external torque `(nv,)`.
+    /// Bias-free external torque of all contacts `(nv,)`.
     pub external_torque: Vec<f64>,
+    /// The same without wanted contacts (Vorndamme 2017, eq. 20), zero where joints are left out `(nv,)`.
+    pub collision_torque: Vec<f64>,
+    /// External wrench that each sensor sees, world axes, at its origin; NaN where one is left out [N, Nm].
+    pub wrenches: Vec<Vector6<f64>>,
+    /// Indices of the sensors without a reading.
+    pub sensors_left_out: Vec<usize>,
+    /// Indices of the joints whose torques a wanted contact loads unmeasured: behind its sensor, and on the way there
+    /// from the base while the sensor gives no reading, and until the observer has forgotten that gap.
+    pub joints_left_out: Vec<usize>,
     /// Estimated acceleration `(nv,)`.
     pub acceleration: Vec<f64>,
     /// The contacts.
@@ -57,8 +93,10 @@ pub struct ContactMonitor {
     release: ReleaseDetector,
     detector: Detector,
     isolator: ContactIsolator,
+    sensing: Option<Sensing>,
     ticks: u64,
     external_torque: Vec<f64>,
+    collision_torque: Vec<f64>,
 }
 
 impl ContactMonitor {
@@ -73,62 +111,122 @@ impl ContactMonitor {
                 "bias_settle_time: must be positive and finite [s], or none, not {time}"
             )));
         }
+        let observer = MomentumObserver::new(robot.clone(), options.dt, &options.observer_gain)?;
+        let compensator = LoadCompensator::new(robot.clone(), &options.sensors)?;
+        let threshold = &options.isolation.torque_threshold;
+        let detector = Detector::with_sensors(
+            robot.clone(),
+            threshold,
+            compensator.tree(),
+            &options.wrench_threshold,
+            options.hold_time,
+        )?;
+        let sensing =
+            Sensing::new(&robot, compensator, &options.wanted_contacts, observer.gain(), options.dt)?;
         Ok(Self {
-            observer: MomentumObserver::new(robot.clone(), options.dt, &options.observer_gain)?,
+            observer,
+            detector,
+            sensing: (!options.sensors.is_empty()).then_some(sensing),
             bias: options.bias_time_constant.map(|constant| BiasTracker::new(nv, constant)).transpose()?,
             release: ReleaseDetector::new(nv, options.bias_settle_time),
-            detector: Detector::new(robot.clone(), &options.isolation.torque_threshold, options.hold_time)?,
             isolator: ContactIsolator::new(robot.clone(), &options.isolation)?,
             dt: options.dt,
             ticks: 0,
             external_torque: vec![0.0; nv],
+            collision_torque: vec![0.0; nv],
             robot,
         })
     }
 
-    /// One control tick. `tau` and `friction` are `(nv,)`, or `(nv - 6,)` for a floating base.
+    /// One control tick. `tau` and `friction` are `(nv,)`, or `(nv - 6,)` for a floating base; `wrenches` the sensors'
+    /// readings, a NaN where one has none. Without sensors there are none.
     ///
     /// # Errors
     /// [`crate::Error::Input`] names the argument; the state is then unchanged.
-    pub fn update(&mut self, q: &[f64], v: &[f64], tau: &[f64], friction: Option<&[f64]>) -> Result<()> {
+    pub fn update(
+        &mut self,
+        q: &[f64],
+        v: &[f64],
+        tau: &[f64],
+        friction: Option<&[f64]>,
+        wrenches: Option<&[[f64; 6]]>,
+    ) -> Result<()> {
+        self.check_wrenches(wrenches)?;
         let first = self.ticks == 0;
         self.external_torque.copy_from_slice(self.observer.update(q, v, tau, friction, None)?);
         self.ticks += 1;
+        self.collision_torque.copy_from_slice(&self.external_torque);
+        if let (Some(sensing), Some(readings)) = (&mut self.sensing, wrenches) {
+            sensing.update(&mut self.observer, readings, self.dt);
+            let wanted = sensing.wanted_torque();
+            self.collision_torque.iter_mut().zip(wanted).for_each(|(torque, wanted)| *torque -= wanted);
+        }
         let ready = self.remove_bias(first);
         if ready {
-            self.detector.update(&self.external_torque, self.dt);
+            let unwanted = self.sensing.as_ref().map_or(&[][..], Sensing::unwanted);
+            self.detector.update_sensed(&self.collision_torque, unwanted, self.dt);
         }
         if self.detector.collision() {
-            self.isolator.isolate_at(self.observer.kinematics(), &self.external_torque);
+            self.isolate();
         } else {
             self.isolator.clear();
         }
         Ok(())
     }
 
-    /// Subtracts the bias, which follows the torque while nothing touches. False during its first average.
+    /// The contacts behind the collision torque.
+    fn isolate(&mut self) {
+        self.isolator.isolate_at(self.observer.kinematics(), &self.collision_torque);
+    }
+
+    fn check_wrenches(&self, wrenches: Option<&[[f64; 6]]>) -> Result<()> {
+        match (&self.sensing, wrenches) {
+            (Some(sensing), Some(wrenches)) => sensing.check_readings(wrenches),
+            (Some(sensing), None) => sensing.check_readings(&[]),
+            (None, Some(rows)) if !rows.is_empty() => {
+                Err(Error::Input("wrenches: the monitor was made without sensors".into()))
+            }
+            (None, _) => Ok(()),
+        }
+    }
+
+    /// Subtracts the bias, which follows the collision torque while nothing touches. False during its first average.
     fn remove_bias(&mut self, first: bool) -> bool {
-        let Some(bias) = &mut self.bias else { return true };
+        let Self { bias, sensing, detector, release, collision_torque, external_torque, dt, .. } = self;
+        let Some(bias) = bias else {
+            leave_out(sensing, collision_torque, None);
+            return true;
+        };
+        // A joint that is left out has no torque to follow.
+        leave_out(sensing, collision_torque, Some(bias.bias()));
         let ready = bias.ready();
-        let threshold = self.detector.threshold();
+        let threshold = detector.threshold();
         let over = |((torque, bias), threshold): ((&f64, &f64), &f64)| (torque - bias).abs() > *threshold;
+        let felt = sensing.as_ref().is_some_and(|sensing| {
+            let mut wrenches = sensing.unwanted().iter().enumerate();
+            wrenches.any(|(sensor, wrench)| detector.is_wrench_over(sensor, wrench))
+        });
         let touched = ready
-            && (self.detector.collision()
-                || self.external_torque.iter().zip(bias.bias()).zip(threshold).any(over));
+            && (detector.collision()
+                || felt
+                || collision_torque.iter().zip(bias.bias()).zip(threshold).any(over));
         if touched {
-            if self.release.update(&self.external_torque, bias.bias(), threshold, self.dt) {
-                bias.set(self.release.remainder());
-                self.release.reset();
-                self.detector.reset();
+            // A sensor that feels a contact knows better than a torque that stands still.
+            if release.update(collision_torque, bias.bias(), threshold, *dt) && !felt {
+                bias.set(release.remainder());
+                release.reset();
+                detector.reset();
             }
         } else {
-            self.release.reset();
+            release.reset();
             // The first call has no torque yet.
             if !first {
-                bias.follow(&self.external_torque, self.dt);
+                bias.follow(collision_torque, *dt);
             }
         }
-        self.external_torque.iter_mut().zip(bias.bias()).for_each(|(torque, bias)| *torque -= bias);
+        for torque in [collision_torque, external_torque] {
+            torque.iter_mut().zip(bias.bias()).for_each(|(torque, bias)| *torque -= bias);
+        }
         ready
     }
 
@@ -147,6 +245,17 @@ impl ContactMonitor {
         report.links.clear();
         report.links.extend_from_slice(self.detector.links());
         report.external_torque.clone_from(&self.external_torque);
+        report.collision_torque.clone_from(&self.collision_torque);
+        report.wrenches.clear();
+        report.sensors_left_out.clear();
+        report.joints_left_out.clear();
+        if let Some(sensing) = &self.sensing {
+            report.wrenches.extend_from_slice(sensing.external());
+            let left_out = |sensor: &usize| !is_known(&sensing.external()[*sensor]);
+            report.sensors_left_out.extend((0..sensing.external().len()).filter(left_out));
+            let is_blind = |body: &usize| sensing.blind()[self.robot.velocity_range(*body)].contains(&true);
+            report.joints_left_out.extend((1..self.robot.body_count()).filter(is_blind).map(|body| body - 1));
+        }
         report.acceleration.clear();
         report.acceleration.extend_from_slice(self.observer.acceleration());
         report.isolation.clone_from(self.isolator.isolation());
@@ -158,6 +267,10 @@ impl ContactMonitor {
         self.detector.reset();
         self.isolator.clear();
         self.external_torque.fill(0.0);
+        self.collision_torque.fill(0.0);
+        if let Some(sensing) = &mut self.sensing {
+            sensing.reset();
+        }
         self.ticks = 0;
         self.release.reset();
         if let Some(bias) = &mut self.bias {
@@ -170,8 +283,21 @@ impl ContactMonitor {
         self.ticks.saturating_sub(1) as f64 * self.dt
     }
 
+    /// The sensors' names.
+    pub fn sensor_names(&self) -> &[String] {
+        self.sensing.as_ref().map_or(&[], |sensing| sensing.tree().names())
+    }
+
     /// The robot watched.
     pub fn robot(&self) -> &Arc<Robot> {
         &self.robot
+    }
+}
+
+/// Puts `value`, or zero, for the torques of joints that are left out.
+fn leave_out(sensing: &Option<Sensing>, torque: &mut [f64], value: Option<&[f64]>) {
+    let Some(sensing) = sensing else { return };
+    for (k, torque) in torque.iter_mut().enumerate().filter(|(k, _)| sensing.blind()[*k]) {
+        *torque = value.map_or(0.0, |value| value[k]);
     }
 }

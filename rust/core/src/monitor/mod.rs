@@ -3,6 +3,7 @@
 mod bias;
 mod contact_monitor;
 mod release;
+mod sensing;
 
 pub use bias::BiasTracker;
 pub use contact_monitor::{ContactMonitor, ContactReport, MonitorOptions};

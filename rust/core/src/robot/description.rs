@@ -79,6 +79,14 @@ pub struct LinkDescription {
     pub joint: usize,
     /// Link frame in the joint's frame.
     pub placement: Pose,
+    /// Index of the link that its joint, fixed or moving, hangs from; none for the root.
+    pub parent: Option<usize>,
+    /// Its own mass [kg]: of the joint's body, the part that is this link's.
+    pub mass: f64,
+    /// Its own centre of mass in the link frame [m].
+    pub com: Vector3<f64>,
+    /// Its own inertia about the centre of mass, in link axes [kg m^2].
+    pub inertia: Matrix3<f64>,
     /// Shapes in the link frame; none where the link cannot be touched.
     pub geometry: Vec<Part>,
 }
@@ -90,7 +98,8 @@ pub struct RobotDescription {
     pub name: String,
     /// Joints, parents before children.
     pub joints: Vec<JointDescription>,
-    /// Links, in any order.
+    /// Links, in any order. A body's inertia is its joint's; what its links' own do not add up to is taken to sit
+    /// at the link that the joint moves.
     pub links: Vec<LinkDescription>,
     /// Gravity in the world frame [m/s^2].
     pub gravity: Vector3<f64>,

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use nalgebra::{Matrix3, Vector3};
 
 use super::description::{JointDescription, JointKind, RobotDescription};
+use super::link::{check_link_tree, Link};
 use crate::error::{Error, Result};
 use crate::spatial::Pose;
 use crate::surface::Surface;
@@ -24,19 +25,6 @@ pub(crate) struct Body {
     pub com: Vector3<f64>,
     pub inertia: Matrix3<f64>,
     pub armature: f64,
-}
-
-/// A link: a frame on a body, perhaps with a surface.
-#[derive(Debug)]
-pub struct Link {
-    /// URDF name.
-    pub name: String,
-    /// The body it is fixed to.
-    pub body: usize,
-    /// Link frame in the body's frame.
-    pub(crate) placement: Pose,
-    /// Its surface, in the link frame.
-    pub surface: Option<Surface>,
 }
 
 /// A robot: immutable, shareable between threads.
@@ -159,8 +147,18 @@ impl Robot {
                 body_links[link.joint].push(index);
                 Some(surface)
             };
-            frozen.push(Link { name: link.name, body: link.joint, placement, surface });
+            frozen.push(Link {
+                name: link.name,
+                body: link.joint,
+                placement,
+                parent: link.parent,
+                mass: link.mass,
+                com: link.com,
+                inertia: link.inertia,
+                surface,
+            });
         }
+        check_link_tree(&frozen, &chains)?;
         Ok(Robot {
             name,
             gravity,

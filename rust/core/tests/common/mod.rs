@@ -8,14 +8,21 @@ use contactsense::spatial::Pose;
 use contactsense::surface::{Geometry, Part};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
+const COM: Vector3<f64> = Vector3::new(0.01, -0.02, 0.12);
+const INERTIA: Matrix3<f64> = Matrix3::new(0.03, 0.001, 0.0, 0.001, 0.03, 0.002, 0.0, 0.002, 0.01);
+
 /// A link: a capsule along z from the joint.
-fn capsule(name: &str, joint: usize, length: f64) -> LinkDescription {
+fn capsule(name: &str, joint: usize, parent: Option<usize>, length: f64) -> LinkDescription {
     let pose = Pose { rotation: Matrix3::identity(), translation: Vector3::new(0.0, 0.0, 0.5 * length) };
     let geometry = Geometry::Capsule { radius: 0.06, half_length: 0.5 * length };
     LinkDescription {
         name: name.into(),
         joint,
         placement: Pose::identity(),
+        parent,
+        mass: 2.0,
+        com: COM,
+        inertia: INERTIA,
         geometry: vec![Part { geometry, pose }],
     }
 }
@@ -37,8 +44,8 @@ fn joint(
             translation: at,
         },
         mass: 2.0,
-        com: Vector3::new(0.01, -0.02, 0.12),
-        inertia: Matrix3::new(0.03, 0.001, 0.0, 0.001, 0.03, 0.002, 0.0, 0.002, 0.01),
+        com: COM,
+        inertia: INERTIA,
         armature: 0.0,
     }
 }
@@ -46,13 +53,15 @@ fn joint(
 /// Appends a chain of revolute joints with alternating axes behind `parent`; returns its last joint.
 fn chain(description: &mut RobotDescription, name: &str, parent: usize, at: Vector3<f64>, count: usize) {
     let axes = [Vector3::z(), Vector3::y(), Vector3::x(), Vector3::new(0.3, -0.5, 0.8)];
+    let mut link = description.links.iter().position(|link| link.joint == parent);
     let (mut parent, mut at) = (parent, at);
     for k in 0..count {
         let kind = if k == 2 { JointKind::Continuous } else { JointKind::Revolute };
         let name = format!("{name}_{k}");
         description.joints.push(joint(&name, parent, kind, axes[k % 4], at));
         parent = description.joints.len();
-        description.links.push(capsule(&name, parent, 0.25));
+        description.links.push(capsule(&name, parent, link, 0.25));
+        link = Some(description.links.len() - 1);
         at = Vector3::new(0.0, 0.05, 0.35);
     }
 }
@@ -78,7 +87,7 @@ pub fn arm() -> Arc<Robot> {
 pub fn humanoid() -> Arc<Robot> {
     let mut description = empty("humanoid");
     description.joints.push(joint("root", 0, JointKind::FreeFlyer, Vector3::z(), Vector3::zeros()));
-    description.links.push(capsule("trunk", 1, 0.4));
+    description.links.push(capsule("trunk", 1, None, 0.4));
     for (k, name) in ["left_arm", "right_arm", "left_leg", "right_leg"].into_iter().enumerate() {
         let (side, height) = (if k % 2 == 0 { 0.25 } else { -0.25 }, if k < 2 { 0.5 } else { -0.1 });
         chain(&mut description, name, 1, Vector3::new(0.0, side, height), 6);

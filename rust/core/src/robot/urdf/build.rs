@@ -40,7 +40,17 @@ pub(super) fn bodies(tree: &Tree, locked: &[(String, f64)], floating_base: bool)
         if let Some(body) = joint.checked_sub(1).and_then(|index| joints.get_mut(index)) {
             add(body, &placement, &link.inertial);
         }
-        links.push(LinkDescription { name: link.name.clone(), joint, placement, geometry: vec![] });
+        let inertial = pose(&link.inertial.origin);
+        links.push(LinkDescription {
+            name: link.name.clone(),
+            joint,
+            placement,
+            parent: visit.joint.map(|_| visit.parent),
+            mass: link.inertial.mass.value,
+            com: inertial.translation,
+            inertia: inertial.rotation * tensor(&link.inertial) * inertial.rotation.transpose(),
+            geometry: vec![],
+        });
     }
     Ok(RobotDescription {
         name: tree.robot.name.clone(),

@@ -1,0 +1,116 @@
+//! Joints and sensors as one tree of signals, and the links between them (Vorndamme 2017, eq. 21 on a tree).
+
+use crate::robot::{Robot, WORLD};
+use crate::sensor::SensorTree;
+
+/// A joint's or a sensor's place in the tree.
+#[derive(Debug, Clone)]
+struct Node {
+    signal: Signal,
+    parent: Option<usize>,
+    /// Touchable links between this signal and the next ones.
+    links: Vec<usize>,
+}
+
+/// What can be over its threshold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Signal {
+    /// Of the joint that moves a body.
+    Joint {
+        body: usize,
+    },
+    Sensor(usize),
+}
+
+/// Finds the links behind the last signal over its threshold and before the next under it, on every branch.
+#[derive(Debug, Clone)]
+pub(super) struct SignalTree {
+    /// Towards the tips: each after its parent.
+    nodes: Vec<Node>,
+    felt_behind: Vec<bool>,
+    in_region: Vec<bool>,
+}
+
+impl SignalTree {
+    pub fn new(robot: &Robot, sensors: &SensorTree) -> Self {
+        let links = robot.links();
+        let first_link = |body: usize| {
+            let from_other = |parent: Option<usize>| parent.is_none_or(|parent| links[parent].body != body);
+            links.iter().position(|link| link.body == body && from_other(link.parent))
+        };
+        // The signal that a link hangs behind.
+        let signal_of = |link: usize| {
+            let body = links[link].body;
+            match sensors.fixed_of_link(link) {
+                Some(sensor) if sensors.body(sensor) == body => Some(Signal::Sensor(sensor)),
+                _ if body == WORLD => None,
+                _ => Some(Signal::Joint { body }),
+            }
+        };
+        let parent_of = |signal: Signal| match signal {
+            Signal::Joint { body } => match first_link(body).and_then(|link| links[link].parent) {
+                Some(parent) => signal_of(parent),
+                None => Some(robot.parent_body(body))
+                    .filter(|body| *body != WORLD)
+                    .map(|body| Signal::Joint { body }),
+            },
+            Signal::Sensor(sensor) => {
+                let link = sensors.link(sensor);
+                let body = links[link].body;
+                match links[link].parent {
+                    Some(parent) if links[parent].body == body => signal_of(parent),
+                    _ => Some(Signal::Joint { body }),
+                }
+            }
+        };
+        let joints = (WORLD + 1..robot.body_count()).map(|body| Signal::Joint { body });
+        let mut signals: Vec<Signal> = joints.chain((0..sensors.len()).map(Signal::Sensor)).collect();
+        let depth = |signal: Signal| std::iter::successors(Some(signal), |signal| parent_of(*signal)).count();
+        signals.sort_by_key(|signal| depth(*signal));
+        let place = |signal: Signal| signals.iter().position(|other| *other == signal);
+        let mut nodes: Vec<Node> = signals
+            .iter()
+            .map(|&signal| Node { signal, parent: parent_of(signal).and_then(place), links: vec![] })
+            .collect();
+        for &link in robot.touchable_links() {
+            if let Some(node) = signal_of(link).and_then(place) {
+                nodes[node].links.push(link);
+            }
+        }
+        let count = nodes.len();
+        Self { nodes, felt_behind: vec![false; count], in_region: vec![false; count] }
+    }
+
+    /// Writes the region's links, farthest from the base first. `over` tells whether a signal is over its threshold, `passes` whether a sensor says
+    /// nothing, so that a region goes on behind it.
+    pub fn region(
+        &mut self,
+        over: impl Fn(Signal) -> bool,
+        passes: impl Fn(usize) -> bool,
+        region: &mut Vec<usize>,
+    ) {
+        region.clear();
+        self.felt_behind.fill(false);
+        self.in_region.fill(false);
+        for (index, node) in self.nodes.iter().enumerate().rev() {
+            let felt = over(node.signal);
+            self.in_region[index] = felt && !self.felt_behind[index];
+            if let Some(parent) = node.parent.filter(|_| felt || self.felt_behind[index]) {
+                self.felt_behind[parent] = true;
+            }
+        }
+        for (index, node) in self.nodes.iter().enumerate() {
+            if let (Signal::Sensor(sensor), Some(parent)) = (node.signal, node.parent) {
+                // A joint with a sensor at its own link has no link of its own: its signal is about those behind.
+                let before = &self.nodes[parent];
+                let shares_joint = before.links.is_empty() && matches!(before.signal, Signal::Joint { .. });
+                if self.in_region[parent] && !over(node.signal) && (passes(sensor) || shares_joint) {
+                    self.in_region[index] = true;
+                }
+            }
+        }
+        for (node, _) in self.nodes.iter().zip(&self.in_region).rev().filter(|(_, inside)| **inside) {
+            region.extend_from_slice(&node.links);
+        }
+    }
+}

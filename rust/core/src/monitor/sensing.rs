@@ -1,0 +1,217 @@
+//! Force/torque sensors in a tick: compensation, exclusion of wanted contacts, what is left for detection.
+
+use nalgebra::{Vector3, Vector6};
+
+use crate::error::{Error, Result};
+use crate::observer::MomentumObserver;
+use crate::robot::motion::{split, stack};
+use crate::robot::{Kinematics, Robot};
+use crate::sensor::{is_known, LaggedTorques, LoadCompensator, SensorTree};
+
+/// A wanted sensor that comes back is trusted after so many time constants of the observer, which by then has
+/// forgotten what the sensor missed.
+const SETTLING: f64 = 5.0;
+
+/// The sensors of a monitor.
+#[derive(Debug, Clone)]
+pub(super) struct Sensing {
+    compensator: LoadCompensator,
+    lag: LaggedTorques,
+    /// Sensors in use.
+    tree: SensorTree,
+    wanted: Vec<bool>,
+    /// How long a wanted sensor stays untrusted after a gap [s].
+    settling_time: f64,
+    unsettled: Vec<f64>,
+    /// What the sensors see beyond what the observer knows yet `(nv,)`.
+    ahead: Vec<f64>,
+    wanted_torque: Vec<f64>,
+    /// Velocity variables behind wanted sensors.
+    behind_wanted: Vec<bool>,
+    blind: Vec<bool>,
+    /// Of each sensor: its external wrench without wanted contacts.
+    unwanted: Vec<Vector6<f64>>,
+}
+
+impl Sensing {
+    /// `wanted` names sensors; `gain` `(nv,)` and `dt` are the observer's.
+    pub fn new(
+        robot: &Robot,
+        compensator: LoadCompensator,
+        wanted: &[String],
+        gain: &[f64],
+        dt: f64,
+    ) -> Result<Self> {
+        let tree = compensator.tree().clone();
+        let mut is_wanted = vec![false; tree.len()];
+        for name in wanted {
+            let Some(sensor) = tree.find(name) else {
+                return Err(Error::Input(format!(
+                    "wanted_contacts: there is no sensor '{name}'; the sensors are {}",
+                    tree.names().join(", ")
+                )));
+            };
+            is_wanted[sensor] = true;
+        }
+        // What is behind a wanted contact's sensor is meant, too.
+        let is_wanted: Vec<bool> = (0..tree.len())
+            .map(|sensor| (0..tree.len()).any(|other| is_wanted[other] && tree.is_behind(sensor, other)))
+            .collect();
+        let mut behind_wanted = vec![false; gain.len()];
+        for body in 1..robot.body_count() {
+            if tree.before_joint(robot, body).is_some_and(|sensor| is_wanted[sensor]) {
+                behind_wanted[robot.velocity_range(body)].fill(true);
+            }
+        }
+        let slowest = gain.iter().copied().fold(f64::INFINITY, f64::min);
+        Ok(Self {
+            lag: LaggedTorques::new(tree.len(), gain, dt),
+            settling_time: SETTLING / slowest,
+            unsettled: vec![0.0; tree.len()],
+            ahead: vec![0.0; gain.len()],
+            wanted_torque: vec![0.0; gain.len()],
+            blind: behind_wanted.clone(),
+            behind_wanted,
+            unwanted: vec![Vector6::zeros(); tree.len()],
+            wanted: is_wanted,
+            tree,
+            compensator,
+        })
+    }
+
+    /// A tick of `dt`, after the observer's, with checked readings.
+    pub fn update(&mut self, observer: &mut MomentumObserver, readings: &[[f64; 6]], dt: f64) {
+        let robot = observer.robot().clone();
+        let Self { compensator, lag, .. } = self;
+        lag.step();
+        // The observer's acceleration is late by its low-pass, and a reading would be compensated wrongly until then.
+        // What the sensors see now, with the acceleration of the tick before, makes up for the delay.
+        compensator.compensate_at(observer.kinematics(), observer.last_acceleration(), readings);
+        self.tree.set_active(compensator.usable());
+        lag.set(&robot, observer.kinematics(), &self.tree, compensator.external());
+        self.ahead.fill(0.0);
+        for sensor in 0..self.tree.len() {
+            if self.tree.is_active(sensor) && self.tree.parent(sensor).is_none() {
+                lag.add_ahead(sensor, &mut self.ahead);
+            }
+        }
+        observer.accelerate_with(&self.ahead);
+        compensator.compensate_at(observer.kinematics(), observer.last_acceleration(), readings);
+        lag.set(&robot, observer.kinematics(), &self.tree, compensator.external());
+        lag.commit(compensator.external());
+        self.find_blind(&robot, dt);
+        self.exclude(observer.kinematics());
+    }
+
+    /// As [`LoadCompensator::check_readings`].
+    pub fn check_readings(&self, wrenches: &[[f64; 6]]) -> Result<()> {
+        self.compensator.check_readings(wrenches)
+    }
+
+    /// External wrenches of all sensors, NaN where one is left out.
+    pub fn external(&self) -> &[Vector6<f64>] {
+        self.compensator.external()
+    }
+
+    /// The same without wanted contacts: zero at a wanted sensor, NaN where it is not known.
+    pub fn unwanted(&self) -> &[Vector6<f64>] {
+        &self.unwanted
+    }
+
+    /// The wanted contacts' torque behind the observer's low-pass `(nv,)`.
+    pub fn wanted_torque(&self) -> &[f64] {
+        &self.wanted_torque
+    }
+
+    /// Which velocity variables a wanted contact may load that no sensor measures `(nv,)`.
+    pub fn blind(&self) -> &[bool] {
+        &self.blind
+    }
+
+    /// The sensors, those with a reading active.
+    pub fn tree(&self) -> &SensorTree {
+        &self.tree
+    }
+
+    /// Which sensors' contacts are wanted.
+    #[allow(dead_code)] // of use to isolation
+    pub fn wanted(&self) -> &[bool] {
+        &self.wanted
+    }
+
+    /// Forgets all ticks.
+    pub fn reset(&mut self) {
+        self.compensator.reset();
+        self.lag.reset();
+        self.tree.set_active(self.compensator.usable());
+        self.unsettled.fill(0.0);
+        self.wanted_torque.fill(0.0);
+        self.blind.copy_from_slice(&self.behind_wanted);
+        self.unwanted.fill(Vector6::zeros());
+    }
+
+    /// Joints that a wanted contact may load unmeasured: on the chain of a wanted sensor without a settled reading,
+    /// and behind a wanted sensor.
+    fn find_blind(&mut self, robot: &Robot, dt: f64) {
+        self.blind.copy_from_slice(&self.behind_wanted);
+        for sensor in 0..self.tree.len() {
+            if !self.wanted[sensor] {
+                continue;
+            }
+            let unsettled = &mut self.unsettled[sensor];
+            *unsettled = if self.tree.is_active(sensor) { *unsettled - dt } else { self.settling_time };
+            if *unsettled > 0.0 {
+                for &body in robot.chain(self.tree.body(sensor)) {
+                    self.blind[robot.velocity_range(body)].fill(true);
+                }
+            }
+        }
+    }
+
+    /// Eq. 20 for the torque, and the same for the wrenches of sensors nearer to the base.
+    fn exclude(&mut self, kinematics: &Kinematics) {
+        self.wanted_torque.fill(0.0);
+        for (unwanted, external) in self.unwanted.iter_mut().zip(self.compensator.external()) {
+            *unwanted = *external;
+        }
+        for sensor in 0..self.tree.len() {
+            if !self.wanted[sensor] {
+                continue;
+            }
+            let trusted = self.unsettled[sensor] <= 0.0;
+            let wrench = self.compensator.external()[sensor];
+            let outermost = (0..self.tree.len()).all(|other| {
+                other == sensor
+                    || !self.wanted[other]
+                    || !self.tree.is_active(other)
+                    || !self.tree.is_behind(sensor, other)
+            });
+            if is_known(&wrench) && outermost {
+                let lagged = self.lag.lagged(sensor);
+                self.wanted_torque.iter_mut().zip(lagged).for_each(|(sum, torque)| *sum += torque);
+            }
+            for other in 0..self.tree.len() {
+                if !self.tree.is_behind(sensor, other) || other == sensor {
+                    continue;
+                }
+                if !trusted {
+                    self.unwanted[other] = Vector6::repeat(f64::NAN);
+                } else if outermost {
+                    let arm = self.tree.position(kinematics, sensor) - self.tree.position(kinematics, other);
+                    self.unwanted[other] -= moved(&wrench, &arm);
+                }
+            }
+        }
+        for (sensor, unwanted) in self.unwanted.iter_mut().enumerate() {
+            if self.wanted[sensor] && is_known(unwanted) {
+                *unwanted = Vector6::zeros();
+            }
+        }
+    }
+}
+
+/// A wrench about a point that lies `arm` before its own.
+fn moved(wrench: &Vector6<f64>, arm: &Vector3<f64>) -> Vector6<f64> {
+    let (force, moment) = split(wrench);
+    stack(&force, &(moment + arm.cross(&force)))
+}

@@ -1,0 +1,62 @@
+//! A six-axis force/torque sensor.
+
+use nalgebra::Matrix3;
+
+use crate::spatial::Pose;
+
+/// A pose's rotation may be off by this much.
+const RIGID_TOLERANCE: f64 = 1e-6;
+
+/// Which side's wrench a reading is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Convention {
+    /// What the distal side exerts on the sensor: a free hand at rest reads its weight.
+    #[default]
+    Load,
+    /// What the sensor exerts on the distal side: the opposite.
+    Support,
+}
+
+impl Convention {
+    /// The convention's name in Python.
+    pub fn name(self) -> &'static str {
+        match self {
+            Convention::Load => "load",
+            Convention::Support => "support",
+        }
+    }
+
+    /// The factor that turns a reading into what the distal side exerts.
+    #[inline]
+    pub fn sign(self) -> f64 {
+        match self {
+            Convention::Load => 1.0,
+            Convention::Support => -1.0,
+        }
+    }
+}
+
+/// A sensor where a link joins its parent: the link and all behind it load the sensor.
+///
+/// A reading is (force, moment) about the sensor frame's origin, in that frame's axes [N, Nm].
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForceTorqueSensor {
+    /// Unique name.
+    pub name: String,
+    /// Name of the link.
+    pub link: String,
+    /// The sensor frame in the link's frame.
+    pub pose: Pose,
+    /// What a reading means.
+    pub convention: Convention,
+}
+
+impl ForceTorqueSensor {
+    /// Whether the pose is a rotation and a finite translation.
+    pub fn has_rigid_pose(&self) -> bool {
+        let Pose { rotation, translation } = &self.pose;
+        let finite = rotation.iter().chain(translation).all(|x| x.is_finite());
+        let skew = (rotation.transpose() * rotation - Matrix3::identity()).amax();
+        finite && skew < RIGID_TOLERANCE && rotation.determinant() > 0.0
+    }
+}

@@ -1,0 +1,241 @@
+//! Readings free of the weight and inertia behind a sensor (Vorndamme 2017, eqs. 13-19 and Algorithm 1).
+
+use std::sync::Arc;
+
+use nalgebra::{Vector3, Vector6};
+
+use super::distal_parts::{distal_parts, DistalPart};
+use super::force_torque_sensor::ForceTorqueSensor;
+use super::sensor_tree::SensorTree;
+use crate::error::{Error, Result};
+use crate::robot::motion::stack;
+use crate::robot::{JointKind, Kinematics, Robot, LARGEST, WORLD};
+
+/// A force and its moment about the reference origin of [`Kinematics`].
+#[derive(Debug, Clone, Copy)]
+struct Load {
+    force: Vector3<f64>,
+    moment: Vector3<f64>,
+}
+
+/// Acceleration of a body: of its origin, without gravity's, and angular.
+#[derive(Debug, Clone, Copy)]
+struct Acceleration {
+    origin: Vector3<f64>,
+    angular: Vector3<f64>,
+}
+
+/// Finds the external wrench that each sensor sees: its reading less what the bodies behind it weigh and resist.
+///
+/// One Newton-Euler pass for all sensors; a body counts once, and sums pass on from sensor to sensor.
+#[derive(Debug, Clone)]
+pub struct LoadCompensator {
+    robot: Arc<Robot>,
+    tree: SensorTree,
+    kinematics: Kinematics,
+    parts: Vec<DistalPart>,
+    /// Bodies with parts and those that carry them, parents first.
+    moving: Vec<usize>,
+    accelerations: Vec<Acceleration>,
+    /// Of each sensor: what all behind it put on it but for external forces.
+    loads: Vec<Load>,
+    external: Vec<Vector6<f64>>,
+    usable: Vec<bool>,
+}
+
+impl LoadCompensator {
+    /// A compensator for a robot's sensors; none is allowed.
+    ///
+    /// # Errors
+    /// As [`SensorTree::new`].
+    pub fn new(robot: Arc<Robot>, sensors: &[ForceTorqueSensor]) -> Result<Self> {
+        let tree = SensorTree::new(&robot, sensors)?;
+        let parts = distal_parts(&robot, &tree);
+        let moves = |body: &usize| parts.iter().any(|part| robot.chain(part.body).contains(body));
+        let zero = Vector3::zeros();
+        Ok(Self {
+            kinematics: Kinematics::new(&robot),
+            moving: (WORLD + 1..robot.body_count()).filter(moves).collect(),
+            accelerations: vec![Acceleration { origin: zero, angular: zero }; robot.body_count()],
+            loads: vec![Load { force: zero, moment: zero }; tree.len()],
+            external: vec![Vector6::zeros(); tree.len()],
+            usable: vec![true; tree.len()],
+            parts,
+            tree,
+            robot,
+        })
+    }
+
+    /// External wrenches at `q`, `v` and the acceleration `a`, one a sensor: (force, moment) on the robot at the
+    /// sensor's origin, world axes [N, Nm]. `wrenches` are the readings, sensor axes, in the sensors' order.
+    ///
+    /// A reading with a NaN leaves its sensor out: its row is NaN, the others hold.
+    ///
+    /// # Errors
+    /// [`Error::Input`] names the argument; the state is then unchanged.
+    pub fn update(
+        &mut self,
+        q: &[f64],
+        v: &[f64],
+        a: &[f64],
+        wrenches: &[[f64; 6]],
+    ) -> Result<&[Vector6<f64>]> {
+        self.robot.check_configuration(q)?;
+        self.robot.check_tangent("v", v)?;
+        self.robot.check_tangent("a", a)?;
+        check_readings(&self.tree, wrenches)?;
+        let mut kinematics = std::mem::replace(&mut self.kinematics, Kinematics::empty());
+        kinematics.set_configuration(&self.robot, q);
+        kinematics.set_velocity(&self.robot, v);
+        self.compensate_at(&kinematics, a, wrenches);
+        self.kinematics = kinematics;
+        Ok(&self.external)
+    }
+
+    /// The same with poses and velocities that are known already, for checked arguments.
+    pub(crate) fn compensate_at(
+        &mut self,
+        kinematics: &Kinematics,
+        acceleration: &[f64],
+        wrenches: &[[f64; 6]],
+    ) {
+        self.accelerate(kinematics, acceleration);
+        self.load(kinematics);
+        for (sensor, reading) in wrenches.iter().enumerate() {
+            self.usable[sensor] = !reading.iter().any(|x| x.is_nan());
+            self.external[sensor] = if self.usable[sensor] {
+                self.external_wrench(kinematics, sensor, reading)
+            } else {
+                Vector6::repeat(f64::NAN)
+            };
+        }
+    }
+
+    /// Checks readings as [`LoadCompensator::update`] does.
+    ///
+    /// # Errors
+    /// [`Error::Input`] names the row.
+    pub fn check_readings(&self, wrenches: &[[f64; 6]]) -> Result<()> {
+        check_readings(&self.tree, wrenches)
+    }
+
+    /// The sensors, all in use.
+    pub fn tree(&self) -> &SensorTree {
+        &self.tree
+    }
+
+    /// The last call's external wrenches; zeros before the first.
+    pub fn external(&self) -> &[Vector6<f64>] {
+        &self.external
+    }
+
+    /// Which sensors gave a reading in the last call.
+    pub fn usable(&self) -> &[bool] {
+        &self.usable
+    }
+
+    /// Forgets the last call.
+    pub fn reset(&mut self) {
+        self.external.fill(Vector6::zeros());
+        self.usable.fill(true);
+    }
+
+    /// Accelerations of the bodies' origins, from the base outwards.
+    fn accelerate(&mut self, kinematics: &Kinematics, acceleration: &[f64]) {
+        self.accelerations[WORLD] = Acceleration { origin: -self.robot.gravity, angular: Vector3::zeros() };
+        for &index in &self.moving {
+            let body = &self.robot.bodies[index];
+            let (state, carrier) = (&kinematics.bodies[index], &kinematics.bodies[body.parent]);
+            let Acceleration { mut origin, mut angular } = self.accelerations[body.parent];
+            let arm = state.position - carrier.position;
+            let spin = carrier.angular;
+            origin += angular.cross(&arm) + spin.cross(&spin.cross(&arm));
+            match body.kind {
+                JointKind::Revolute | JointKind::Continuous => {
+                    angular += state.axis() * acceleration[body.idx_v] + spin.cross(&state.angular);
+                }
+                JointKind::Prismatic => {
+                    let sliding = state.linear - carrier.linear;
+                    origin += state.axis() * acceleration[body.idx_v] + spin.cross(&sliding) * 2.0;
+                }
+                JointKind::FreeFlyer => {
+                    let rate = &acceleration[body.idx_v..body.idx_v + 6];
+                    let linear = state.rotation * Vector3::new(rate[0], rate[1], rate[2]);
+                    // The velocity's components are the base frame's, which turns.
+                    origin += linear + state.angular.cross(&state.velocity_at(&state.position));
+                    angular += state.rotation * Vector3::new(rate[3], rate[4], rate[5]);
+                }
+            }
+            self.accelerations[index] = Acceleration { origin, angular };
+        }
+    }
+
+    /// What each sensor carries: eq. 18 for every part once, then from sensor to sensor (Algorithm 1). About one
+    /// origin for all, so that a wrench needs no moment arm to be passed on.
+    fn load(&mut self, kinematics: &Kinematics) {
+        let zero = Vector3::zeros();
+        self.loads.fill(Load { force: zero, moment: zero });
+        for part in &self.parts {
+            let state = &kinematics.bodies[part.body];
+            let Acceleration { origin, angular } = &self.accelerations[part.body];
+            let (a, rate) = (state.rotation.tr_mul(origin), state.rotation.tr_mul(angular));
+            let spin = state.rotation.tr_mul(&state.angular);
+            let force = a * part.mass + rate.cross(&part.moment) + spin.cross(&spin.cross(&part.moment));
+            let moment =
+                part.moment.cross(&a) + part.rotational * rate + spin.cross(&(part.rotational * spin));
+            let force = state.rotation * force;
+            let load = &mut self.loads[part.sensor];
+            load.force += force;
+            load.moment += state.rotation * moment + state.position.cross(&force);
+        }
+        for &sensor in self.tree.distal_first() {
+            if let Some(parent) = self.tree.fixed_parent(sensor) {
+                let Load { force, moment } = self.loads[sensor];
+                self.loads[parent].force += force;
+                self.loads[parent].moment += moment;
+            }
+        }
+    }
+
+    /// `F_ext,S = F_S + F_c,S` (eq. 19).
+    fn external_wrench(&self, kinematics: &Kinematics, sensor: usize, reading: &[f64; 6]) -> Vector6<f64> {
+        let turn = self.tree.rotation(kinematics, sensor) * self.tree.sensors()[sensor].convention.sign();
+        let at = self.tree.position(kinematics, sensor);
+        let Load { force, moment } = &self.loads[sensor];
+        let [fx, fy, fz, mx, my, mz] = *reading;
+        stack(
+            &(turn * Vector3::new(fx, fy, fz) + force),
+            &(turn * Vector3::new(mx, my, mz) + moment - at.cross(force)),
+        )
+    }
+}
+
+/// One reading a sensor; NaN says that there is none, other numbers must be of a size to compute with.
+fn check_readings(tree: &SensorTree, wrenches: &[[f64; 6]]) -> Result<()> {
+    if wrenches.len() != tree.len() {
+        return Err(wrong_count(tree, wrenches.len()));
+    }
+    for (row, reading) in wrenches.iter().enumerate() {
+        if reading.iter().any(|x| x.abs() >= LARGEST) {
+            return Err(too_large(tree, row));
+        }
+    }
+    Ok(())
+}
+
+#[cold]
+fn wrong_count(tree: &SensorTree, found: usize) -> Error {
+    let names = tree.names().join(", ");
+    Error::Input(format!(
+        "wrenches: expected shape ({}, 6), one row a sensor ({names}), got {found} rows",
+        tree.len()
+    ))
+}
+
+#[cold]
+fn too_large(tree: &SensorTree, row: usize) -> Error {
+    Error::Input(format!(
+        "wrenches: row {row} ('{}') must be below {LARGEST:e}; NaN where a sensor gives no reading",
+        tree.names()[row]
+    ))
+}

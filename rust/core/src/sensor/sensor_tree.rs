@@ -1,0 +1,229 @@
+//! Where sensors sit, and which of them a link or a sensor loads next.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::force_torque_sensor::ForceTorqueSensor;
+use crate::error::{Error, Result};
+use crate::robot::{Kinematics, Robot, WORLD};
+use crate::spatial::Pose;
+
+/// The sensors of one robot, in the order given, and the tree they form.
+#[derive(Debug, Clone)]
+pub struct SensorTree {
+    sensors: Vec<ForceTorqueSensor>,
+    names: Vec<String>,
+    mounts: Vec<Mount>,
+    distal_first: Vec<usize>,
+    /// Of every link, all sensors in use or not.
+    nearest: Vec<Option<usize>>,
+    active: Vec<bool>,
+    parent: Vec<Option<usize>>,
+    of_link: Vec<Option<usize>>,
+}
+
+/// Where a sensor is fixed.
+#[derive(Debug, Clone, Copy)]
+struct Mount {
+    link: usize,
+    body: usize,
+    /// Sensor frame in the body's frame.
+    placement: Pose,
+    /// The next sensor towards the base, in use or not.
+    parent: Option<usize>,
+}
+
+impl SensorTree {
+    /// Checks the sensors of a robot; none is an empty tree.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a link that does not exist or that nothing movable carries, two sensors of one name or on
+    /// one link, and a pose that is not rigid.
+    pub fn new(robot: &Robot, sensors: &[ForceTorqueSensor]) -> Result<Self> {
+        let mut at_link = vec![None; robot.links().len()];
+        let mut mounts = Vec::with_capacity(sensors.len());
+        for (index, sensor) in sensors.iter().enumerate() {
+            let mount = mount(robot, sensor)?;
+            if sensors[..index].iter().any(|other| other.name == sensor.name) {
+                return Err(Error::Input(format!("sensors: two are named '{}'", sensor.name)));
+            }
+            if let Some(other) = at_link[mount.link].replace(index) {
+                let other: &ForceTorqueSensor = &sensors[other];
+                return Err(Error::Input(format!(
+                    "sensors: '{}' and '{}' both sit at link '{}'; a link has one joint to its parent",
+                    other.name, sensor.name, sensor.link
+                )));
+            }
+            mounts.push(mount);
+        }
+        let upwards = |start: Option<usize>| std::iter::successors(start, |&link| robot.links()[link].parent);
+        let nearest_from = |start: Option<usize>| upwards(start).find_map(|link| at_link[link]);
+        for mount in &mut mounts {
+            mount.parent = nearest_from(robot.links()[mount.link].parent);
+        }
+        let depth = |sensor: usize| upwards(Some(mounts[sensor].link)).count();
+        let mut distal_first: Vec<usize> = (0..sensors.len()).collect();
+        distal_first.sort_by_key(|&sensor| std::cmp::Reverse(depth(sensor)));
+        let nearest: Vec<_> = (0..robot.links().len()).map(|link| nearest_from(Some(link))).collect();
+        Ok(Self {
+            sensors: sensors.to_vec(),
+            names: sensors.iter().map(|sensor| sensor.name.clone()).collect(),
+            active: vec![true; sensors.len()],
+            parent: mounts.iter().map(|mount| mount.parent).collect(),
+            of_link: nearest.clone(),
+            mounts,
+            distal_first,
+            nearest,
+        })
+    }
+
+    /// Number of sensors, in use or not.
+    pub fn len(&self) -> usize {
+        self.sensors.len()
+    }
+
+    /// Whether there are no sensors.
+    pub fn is_empty(&self) -> bool {
+        self.sensors.is_empty()
+    }
+
+    /// The sensors.
+    pub fn sensors(&self) -> &[ForceTorqueSensor] {
+        &self.sensors
+    }
+
+    /// The sensors' names.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// A sensor's index by its name.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.names.iter().position(|known| known == name)
+    }
+
+    /// The link that a sensor sits at: it and all behind it load the sensor.
+    pub fn link(&self, sensor: usize) -> usize {
+        self.mounts[sensor].link
+    }
+
+    /// The body of a sensor's link.
+    pub fn body(&self, sensor: usize) -> usize {
+        self.mounts[sensor].body
+    }
+
+    /// The next sensor in use towards the base: the one that this sensor's loads pass on to.
+    pub fn parent(&self, sensor: usize) -> Option<usize> {
+        self.parent[sensor]
+    }
+
+    /// The next sensor towards the base, in use or not.
+    pub(crate) fn fixed_parent(&self, sensor: usize) -> Option<usize> {
+        self.mounts[sensor].parent
+    }
+
+    /// The nearest sensor in use at or above a link: the one that the link loads directly.
+    pub fn of_link(&self, link: usize) -> Option<usize> {
+        self.of_link[link]
+    }
+
+    /// The nearest sensor at or above a link, in use or not.
+    pub(crate) fn fixed_of_link(&self, link: usize) -> Option<usize> {
+        self.nearest[link]
+    }
+
+    /// The nearest sensor, in use or not, that the joint which moves a body lies behind: all that a joint moves loads
+    /// the sensors before it.
+    pub(crate) fn before_joint(&self, robot: &Robot, body: usize) -> Option<usize> {
+        let mut body = body;
+        while body != WORLD {
+            let first = robot
+                .links()
+                .iter()
+                .filter(|link| link.body == body)
+                .find_map(|link| link.parent.filter(|parent| robot.links()[*parent].body != body));
+            if let Some(parent) = first {
+                return self.nearest[parent];
+            }
+            body = robot.parent_body(body);
+        }
+        None
+    }
+
+    /// Whether a sensor lies behind another or is that one, in use or not.
+    pub(crate) fn is_behind(&self, sensor: usize, other: usize) -> bool {
+        std::iter::successors(Some(sensor), |sensor| self.fixed_parent(*sensor)).any(|sensor| sensor == other)
+    }
+
+    /// The sensors, each after all behind it.
+    pub fn distal_first(&self) -> &[usize] {
+        &self.distal_first
+    }
+
+    /// Whether a sensor is in use.
+    pub fn is_active(&self, sensor: usize) -> bool {
+        self.active[sensor]
+    }
+
+    /// Leaves out the sensors that are false in `active`, one entry a sensor; what they measure then passes on to the
+    /// next sensor towards the base. Allocates nothing.
+    pub fn set_active(&mut self, active: &[bool]) {
+        if self.active == active {
+            return;
+        }
+        self.active.copy_from_slice(active);
+        let Self { mounts, nearest, active, parent, of_link, .. } = self;
+        let in_use = |mut sensor: Option<usize>| {
+            while let Some(index) = sensor.filter(|index| !active[*index]) {
+                sensor = mounts[index].parent;
+            }
+            sensor
+        };
+        parent.iter_mut().zip(mounts.iter()).for_each(|(parent, mount)| *parent = in_use(mount.parent));
+        of_link.iter_mut().zip(nearest.iter()).for_each(|(sensor, nearest)| *sensor = in_use(*nearest));
+    }
+
+    /// A sensor's origin, from `kinematics.origin`, world axes [m].
+    #[inline]
+    pub fn position(&self, kinematics: &Kinematics, sensor: usize) -> Vector3<f64> {
+        let Mount { body, placement, .. } = &self.mounts[sensor];
+        let state = &kinematics.bodies[*body];
+        state.position + state.rotation * placement.translation
+    }
+
+    /// Rotation from the sensor frame to world axes.
+    #[inline]
+    pub fn rotation(&self, kinematics: &Kinematics, sensor: usize) -> Matrix3<f64> {
+        let Mount { body, placement, .. } = &self.mounts[sensor];
+        kinematics.bodies[*body].rotation * placement.rotation
+    }
+}
+
+fn mount(robot: &Robot, sensor: &ForceTorqueSensor) -> Result<Mount> {
+    let name = &sensor.name;
+    let Some(index) = robot.links().iter().position(|link| link.name == sensor.link) else {
+        let names: Vec<&str> = robot.links().iter().map(|link| link.name.as_str()).collect();
+        return Err(Error::Input(format!(
+            "sensors: '{name}' sits at the link '{}', which the robot does not have; its links are {}",
+            sensor.link,
+            names.join(", ")
+        )));
+    };
+    let link = &robot.links()[index];
+    if link.parent.is_none() || link.body == WORLD {
+        let reason = if link.body == WORLD { "is fixed to the world" } else { "is the root" };
+        return Err(Error::Input(format!(
+            "sensors: '{name}' sits at the link '{}', which {reason}; a sensor joins a link that can move to its \
+             parent",
+            sensor.link
+        )));
+    }
+    if !sensor.has_rigid_pose() {
+        return Err(Error::Input(format!(
+            "sensors: the pose of '{name}' must be rigid: a rotation matrix and a finite translation [m]"
+        )));
+    }
+    Ok(Mount { link: index, body: link.body, placement: link.placement.compose(&sensor.pose), parent: None })
+}
+
+#[cfg(test)]
+mod tests;

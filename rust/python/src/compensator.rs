@@ -1,0 +1,46 @@
+//! `LoadCompensator`.
+
+use contactsense::sensor::LoadCompensator;
+use numpy::PyArray2;
+use pyo3::prelude::*;
+
+use crate::arrays::{from_rows, Readings, Vector};
+use crate::errors::to_python;
+use crate::robot::PyRobot;
+use crate::sensor::sensors;
+
+/// Frees the readings of force/torque sensors of the weight and inertia behind them (Vorndamme 2017, eqs. 13-19).
+///
+/// One pass for all sensors, also for several in a chain and at fixed joints. `sensors`: of `ForceTorqueSensor`, names and
+/// links unique. Raises `InputError` that names what is wrong.
+#[pyclass(name = "LoadCompensator", module = "contactsense._core")]
+pub struct PyLoadCompensator(LoadCompensator);
+
+#[pymethods]
+impl PyLoadCompensator {
+    #[new]
+    fn new(robot: &Bound<'_, PyRobot>, sensors: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let compensator = LoadCompensator::new(robot.get().0.clone(), &self::sensors(sensors)?);
+        Ok(Self(compensator.map_err(|error| to_python(robot.py(), error))?))
+    }
+
+    /// The external wrench that each sensor sees, `(n_sensors, 6)` [N, Nm]: on the robot, world axes, at the sensor's origin.
+    ///
+    /// `q` `(nq,)`, `v` and `a` `(nv,)`, `wrenches` `(n_sensors, 6)`: the readings, sensor axes. A reading with a NaN
+    /// leaves its sensor out: its row is NaN, the others hold. Raises `InputError` that names the argument.
+    fn update<'py>(
+        &mut self,
+        q: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+        a: &Bound<'py, PyAny>,
+        wrenches: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let py = q.py();
+        let (q, v, a) = (Vector::new("q", q)?, Vector::new("v", v)?, Vector::new("a", a)?);
+        let wrenches = Readings::new(wrenches)?;
+        match self.0.update(q.slice(), v.slice(), a.slice(), wrenches.rows()) {
+            Ok(external) => from_rows(py, external.iter().map(|wrench| (*wrench).into())),
+            Err(error) => Err(to_python(py, error)),
+        }
+    }
+}

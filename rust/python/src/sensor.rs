@@ -1,0 +1,109 @@
+//! `ForceTorqueSensor`.
+
+use contactsense::sensor::{Convention, ForceTorqueSensor};
+use contactsense::spatial::Pose;
+use numpy::PyArray2;
+use pyo3::prelude::*;
+
+use crate::arrays::pose;
+use crate::description::placement;
+use crate::errors::input;
+
+const LAST_ROW: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
+
+/// A six-axis force/torque sensor where `link` joins its parent: `link` and all behind it load the sensor.
+///
+/// `pose`: `(4, 4)`, the sensor frame in the link's, default the link frame itself. A reading is (force, moment) about
+/// the sensor frame's origin, in its axes [N, Nm]; `convention` "load": what the distal side exerts on the sensor (a free
+/// hand at rest: its weight), "support": the opposite. Raises `InputError` that names the argument.
+#[pyclass(frozen, eq, skip_from_py_object, name = "ForceTorqueSensor", module = "contactsense._core")]
+#[derive(PartialEq, Clone)]
+pub struct PyForceTorqueSensor(pub ForceTorqueSensor);
+
+#[pymethods]
+impl PyForceTorqueSensor {
+    #[new]
+    #[pyo3(signature = (name, link, *, pose=None, convention="load"))]
+    fn new(
+        py: Python<'_>,
+        name: &Bound<'_, PyAny>,
+        link: &Bound<'_, PyAny>,
+        pose: Option<&Bound<'_, PyAny>>,
+        convention: &str,
+    ) -> PyResult<Self> {
+        let text = |argument: &str, object: &Bound<'_, PyAny>| {
+            object
+                .extract::<String>()
+                .map_err(|_| input(py, format!("{argument}: expected a string, got {object}")))
+        };
+        let convention = match convention {
+            "load" => Convention::Load,
+            "support" => Convention::Support,
+            other => {
+                return Err(input(py, format!("convention: must be 'load' or 'support', not '{other}'")));
+            }
+        };
+        let pose = pose.map_or(Ok(Pose::identity()), |object| {
+            let rows = crate::arrays::rows::<4>("pose", object)?;
+            if rows.len() != 4 || rows[3] != LAST_ROW {
+                return Err(input(
+                    py,
+                    "pose: expected an array of shape (4, 4) with last row 0, 0, 0, 1".into(),
+                ));
+            }
+            placement("pose", object)
+        })?;
+        let sensor =
+            ForceTorqueSensor { name: text("name", name)?, link: text("link", link)?, pose, convention };
+        if !sensor.has_rigid_pose() {
+            return Err(input(py, "pose: must be rigid: a rotation matrix and a translation [m]".into()));
+        }
+        Ok(Self(sensor))
+    }
+
+    /// Its name.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.0.name
+    }
+
+    /// Name of the link that it joins to the link's parent.
+    #[getter]
+    fn link(&self) -> &str {
+        &self.0.link
+    }
+
+    /// The sensor frame in the link's, `(4, 4)`; a copy.
+    #[getter]
+    fn pose<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        pose(py, &self.0.pose)
+    }
+
+    /// "load" or "support".
+    #[getter]
+    fn convention(&self) -> &'static str {
+        self.0.convention.name()
+    }
+
+    fn __hash__(&self) -> u64 {
+        use std::hash::{DefaultHasher, Hash, Hasher};
+        let mut hasher = DefaultHasher::new();
+        (&self.0.name, &self.0.link, self.0.convention.name()).hash(&mut hasher);
+        hasher.finish()
+    }
+
+    fn __repr__(&self) -> String {
+        let Self(ForceTorqueSensor { name, link, convention, .. }) = self;
+        format!("ForceTorqueSensor('{name}', '{link}', convention='{}')", convention.name())
+    }
+}
+
+/// The sensors of an iterable; a single one is no iterable of sensors.
+pub fn sensors(object: &Bound<'_, PyAny>) -> PyResult<Vec<ForceTorqueSensor>> {
+    let refused = || input(object.py(), "sensors: expected an iterable of ForceTorqueSensor".into());
+    let mut found = vec![];
+    for item in object.try_iter().map_err(|_| refused())? {
+        found.push(item?.cast::<PyForceTorqueSensor>().map_err(|_| refused())?.get().0.clone());
+    }
+    Ok(found)
+}
