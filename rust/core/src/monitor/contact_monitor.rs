@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::isolation::{ContactIsolator, Isolation, IsolatorOptions};
 use crate::observer::MomentumObserver;
 use crate::robot::Robot;
-use crate::sensor::{is_known, ForceTorqueSensor, LoadCompensator};
+use crate::sensor::{is_known, ForceTorqueSensor, SensorTree};
 
 /// Settings of a [`ContactMonitor`].
 #[derive(Debug, Clone)]
@@ -112,17 +112,16 @@ impl ContactMonitor {
             )));
         }
         let observer = MomentumObserver::new(robot.clone(), options.dt, &options.observer_gain)?;
-        let compensator = LoadCompensator::new(robot.clone(), &options.sensors)?;
+        let tree = SensorTree::new(&robot, &options.sensors)?;
         let threshold = &options.isolation.torque_threshold;
         let detector = Detector::with_sensors(
             robot.clone(),
             threshold,
-            compensator.tree(),
+            &tree,
             &options.wrench_threshold,
             options.hold_time,
         )?;
-        let sensing =
-            Sensing::new(&robot, compensator, &options.wanted_contacts, observer.gain(), options.dt)?;
+        let sensing = Sensing::new(&robot, tree, &options.wanted_contacts, observer.gain(), options.dt)?;
         Ok(Self {
             observer,
             detector,
@@ -157,7 +156,7 @@ impl ContactMonitor {
         self.ticks += 1;
         self.collision_torque.copy_from_slice(&self.external_torque);
         if let (Some(sensing), Some(readings)) = (&mut self.sensing, wrenches) {
-            sensing.update(&mut self.observer, readings, self.dt);
+            sensing.update(&self.observer, readings, self.dt);
             let wanted = sensing.wanted_torque();
             self.collision_torque.iter_mut().zip(wanted).for_each(|(torque, wanted)| *torque -= wanted);
         }

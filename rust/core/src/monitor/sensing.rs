@@ -1,4 +1,6 @@
-//! Force/torque sensors in a tick: compensation, exclusion of wanted contacts, what is left for detection.
+//! Force/torque sensors in a tick: external wrenches, exclusion of wanted contacts, what is left for detection.
+
+use std::sync::Arc;
 
 use nalgebra::{Vector3, Vector6};
 
@@ -6,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::observer::MomentumObserver;
 use crate::robot::motion::{split, stack};
 use crate::robot::{Kinematics, Robot};
-use crate::sensor::{is_known, LaggedTorques, LoadCompensator, SensorTree};
+use crate::sensor::{check_readings, is_known, SensorTree, WrenchObserver};
 
 /// A wanted sensor that comes back is trusted after so many time constants of the observer, which by then has
 /// forgotten what the sensor missed.
@@ -15,16 +17,13 @@ const SETTLING: f64 = 5.0;
 /// The sensors of a monitor.
 #[derive(Debug, Clone)]
 pub(super) struct Sensing {
-    compensator: LoadCompensator,
-    lag: LaggedTorques,
+    wrenches: WrenchObserver,
     /// Sensors in use.
     tree: SensorTree,
     wanted: Vec<bool>,
     /// How long a wanted sensor stays untrusted after a gap [s].
     settling_time: f64,
     unsettled: Vec<f64>,
-    /// What the sensors see beyond what the observer knows yet `(nv,)`.
-    ahead: Vec<f64>,
     wanted_torque: Vec<f64>,
     /// Velocity variables behind wanted sensors.
     behind_wanted: Vec<bool>,
@@ -36,13 +35,12 @@ pub(super) struct Sensing {
 impl Sensing {
     /// `wanted` names sensors; `gain` `(nv,)` and `dt` are the observer's.
     pub fn new(
-        robot: &Robot,
-        compensator: LoadCompensator,
+        robot: &Arc<Robot>,
+        tree: SensorTree,
         wanted: &[String],
         gain: &[f64],
         dt: f64,
     ) -> Result<Self> {
-        let tree = compensator.tree().clone();
         let mut is_wanted = vec![false; tree.len()];
         for name in wanted {
             let Some(sensor) = tree.find(name) else {
@@ -65,52 +63,34 @@ impl Sensing {
         }
         let slowest = gain.iter().copied().fold(f64::INFINITY, f64::min);
         Ok(Self {
-            lag: LaggedTorques::new(tree.len(), gain, dt),
+            wrenches: WrenchObserver::new(robot.clone(), &tree, gain, dt),
             settling_time: SETTLING / slowest,
             unsettled: vec![0.0; tree.len()],
-            ahead: vec![0.0; gain.len()],
             wanted_torque: vec![0.0; gain.len()],
             blind: behind_wanted.clone(),
             behind_wanted,
             unwanted: vec![Vector6::zeros(); tree.len()],
             wanted: is_wanted,
             tree,
-            compensator,
         })
     }
 
-    /// A tick of `dt`, after the observer's, with checked readings.
-    pub fn update(&mut self, observer: &mut MomentumObserver, readings: &[[f64; 6]], dt: f64) {
-        let robot = observer.robot().clone();
-        let Self { compensator, lag, .. } = self;
-        lag.step();
-        // The observer's acceleration is late by its low-pass, and a reading would be compensated wrongly until then.
-        // What the sensors see now, with the acceleration of the tick before, makes up for the delay.
-        compensator.compensate_at(observer.kinematics(), observer.last_acceleration(), readings);
-        self.tree.set_active(compensator.usable());
-        lag.set(&robot, observer.kinematics(), &self.tree, compensator.external());
-        self.ahead.fill(0.0);
-        for sensor in 0..self.tree.len() {
-            if self.tree.is_active(sensor) && self.tree.parent(sensor).is_none() {
-                lag.add_ahead(sensor, &mut self.ahead);
-            }
-        }
-        observer.accelerate_with(&self.ahead);
-        compensator.compensate_at(observer.kinematics(), observer.last_acceleration(), readings);
-        lag.set(&robot, observer.kinematics(), &self.tree, compensator.external());
-        lag.commit(compensator.external());
-        self.find_blind(&robot, dt);
+    /// A tick of `dt`, after the momentum observer's, with checked readings.
+    pub fn update(&mut self, observer: &MomentumObserver, readings: &[[f64; 6]], dt: f64) {
+        self.wrenches.update(observer.kinematics(), &self.tree, readings);
+        self.tree.set_active(self.wrenches.usable());
+        self.find_blind(observer.robot(), dt);
         self.exclude(observer.kinematics());
     }
 
-    /// As [`LoadCompensator::check_readings`].
+    /// As [`crate::sensor::LoadCompensator::check_readings`].
     pub fn check_readings(&self, wrenches: &[[f64; 6]]) -> Result<()> {
-        self.compensator.check_readings(wrenches)
+        check_readings(&self.tree, wrenches)
     }
 
     /// External wrenches of all sensors, NaN where one is left out.
     pub fn external(&self) -> &[Vector6<f64>] {
-        self.compensator.external()
+        self.wrenches.external()
     }
 
     /// The same without wanted contacts: zero at a wanted sensor, NaN where it is not known.
@@ -141,9 +121,8 @@ impl Sensing {
 
     /// Forgets all ticks.
     pub fn reset(&mut self) {
-        self.compensator.reset();
-        self.lag.reset();
-        self.tree.set_active(self.compensator.usable());
+        self.wrenches.reset();
+        self.tree.set_active(self.wrenches.usable());
         self.unsettled.fill(0.0);
         self.wanted_torque.fill(0.0);
         self.blind.copy_from_slice(&self.behind_wanted);
@@ -171,7 +150,7 @@ impl Sensing {
     /// Eq. 20 for the torque, and the same for the wrenches of sensors nearer to the base.
     fn exclude(&mut self, kinematics: &Kinematics) {
         self.wanted_torque.fill(0.0);
-        for (unwanted, external) in self.unwanted.iter_mut().zip(self.compensator.external()) {
+        for (unwanted, external) in self.unwanted.iter_mut().zip(self.wrenches.external()) {
             *unwanted = *external;
         }
         for sensor in 0..self.tree.len() {
@@ -179,7 +158,7 @@ impl Sensing {
                 continue;
             }
             let trusted = self.unsettled[sensor] <= 0.0;
-            let wrench = self.compensator.external()[sensor];
+            let wrench = self.wrenches.external()[sensor];
             let outermost = (0..self.tree.len()).all(|other| {
                 other == sensor
                     || !self.wanted[other]
@@ -187,7 +166,7 @@ impl Sensing {
                     || !self.tree.is_behind(sensor, other)
             });
             if is_known(&wrench) && outermost {
-                let lagged = self.lag.lagged(sensor);
+                let lagged = self.wrenches.lagged_torque(sensor);
                 self.wanted_torque.iter_mut().zip(lagged).for_each(|(sum, torque)| *sum += torque);
             }
             for other in 0..self.tree.len() {

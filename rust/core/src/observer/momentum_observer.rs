@@ -158,23 +158,6 @@ impl MomentumObserver {
         &self.acceleration
     }
 
-    /// The acceleration computed last, which may be of the step before.
-    pub(crate) fn last_acceleration(&self) -> &[f64] {
-        &self.acceleration
-    }
-
-    /// The acceleration at the last step with an external torque that the observer does not know yet.
-    pub(crate) fn accelerate_with(&mut self, ahead: &[f64]) {
-        let Self { robot, forward, kinematics, velocity, total_torque, acceleration, .. } = self;
-        let torques = self.motor_torque.iter().zip(&self.external_torque).zip(ahead);
-        total_torque
-            .iter_mut()
-            .zip(torques)
-            .for_each(|(sum, ((motor, ext), ahead))| *sum = motor + ext + ahead);
-        forward.evaluate(robot, kinematics, velocity, total_torque, acceleration);
-        self.acceleration_is_current = true;
-    }
-
     /// The gain `(nv,)` [1/s].
     pub fn gain(&self) -> &[f64] {
         &self.gain
