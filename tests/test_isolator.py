@@ -10,7 +10,8 @@ from hypothesis.extra.numpy import arrays
 from robots import BY_NAME
 
 import contactsense as cs
-from contactsense.studies.single_contacts import LinkResult, random_configuration, run, touches
+from contactsense.studies.sampling import random_configuration
+from contactsense.studies.single_contacts import LinkResult, run, touches
 
 ARMS = ("iiwa14", "panda", "ur5", "iiwa14_mesh", "xarm7")
 HUMANOIDS = ("atlas", "atlas_v5", "atlas_hull", "talos", "g1")
@@ -180,7 +181,7 @@ def test_error_bars_hold_under_noise() -> None:
     step=arrays(float, 36, elements=st.floats(-10.0, 10.0)),
 )
 def test_any_finite_torque_has_an_answer(tau: np.ndarray, step: np.ndarray) -> None:
-    from contactsense.studies.single_contacts import integrate
+    from contactsense.studies.sampling import integrate
 
     q = integrate(ATLAS, ATLAS.neutral(), step)
     isolation = ISOLATOR.isolate(q, tau)

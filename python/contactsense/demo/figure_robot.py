@@ -11,7 +11,7 @@ from matplotlib.patches import Patch
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 
 from .. import Robot
-from ..studies.single_contacts import blocked
+from ..studies.sampling import blocked
 from .result import HitResult
 from .settings import FloatArray
 from .style import BODY, ESTIMATE, NAMED, TEXT, TRUTH, WRONG

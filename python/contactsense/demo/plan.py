@@ -8,7 +8,7 @@ import pinocchio as pin
 from .. import Robot
 from ..errors import ContactSenseError
 from ..sim import Push, SineTrajectory, random_push
-from ..studies.single_contacts import blocked
+from ..studies.sampling import blocked
 from .settings import FloatArray
 
 END = 8.0  # [s]

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import ContactIsolator, InputError, Robot
+from .sampling import FORCES, Touch, lines, random_configuration
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -19,19 +20,8 @@ FloatArray = NDArray[np.float64]
 
 TOLERANCE = 1e-9  # [m], and relative for the force
 RANK_TOLERANCE = 1e-7  # of the largest singular value
-CONE = np.deg2rad(30.0)
 TRIES = 300
 POINTS_PER_POSE = 10
-
-
-@dataclass(frozen=True)
-class Touch:
-    """A true contact, world frame."""
-
-    link: str
-    q: FloatArray
-    point: FloatArray  # [m]
-    force: FloatArray  # [N]
 
 
 @dataclass(frozen=True)
@@ -44,80 +34,19 @@ class LinkResult:
     force_error: float  # relative
 
 
-def random_configuration(robot: Robot, rng: np.random.Generator) -> FloatArray:
-    """A pose with every joint turned by up to half a turn, or moved by up to 0.1 m; the base anywhere."""
-    q = robot.neutral()
-    step = rng.uniform(-1.0, 1.0, robot.nv)
-    return integrate(robot, q, step * (np.pi / 2))
-
-
-def integrate(robot: Robot, q: FloatArray, step: FloatArray) -> FloatArray:
-    """`q` moved by `step` `(nv,)`, joint by joint; the base's orientation by its rotation vector."""
-    q, position = q.copy(), 0
-    index = 0
-    if robot.floating_base:
-        q[:3] += step[:3]
-        angle = float(np.linalg.norm(step[3:6]))
-        axis = step[3:6] / max(angle, 1e-12)
-        q[3:7] = [*(np.sin(angle / 2) * axis), np.cos(angle / 2)]
-        position, index = 7, 6
-    for kind in robot.joint_kinds[int(robot.floating_base) :]:
-        if kind == "continuous":
-            angle = float(np.arctan2(q[position + 1], q[position])) + step[index]
-            q[position : position + 2] = np.cos(angle), np.sin(angle)
-            position += 2
-        else:
-            q[position] += step[index] * (0.05 if kind == "prismatic" else 1.0)
-            position += 1
-        index += 1
-    return q
-
-
 def touches(robot: Robot, link: str, count: int, rng: np.random.Generator) -> Iterator[Touch]:
     """Random touches of a link, their lines of action free of all surfaces before the contact.
 
     Fewer than `count` where the link can hardly be reached. A new pose after every few.
     """
-    surface = robot.surface(link)
     found = 0
     for _ in range(TRIES):
         q = random_configuration(robot, rng)
-        samples = surface.sample(POINTS_PER_POSE, seed=int(rng.integers(2**63)))
-        pose = robot.link_pose(q, link)
-        points = samples.points @ pose[:3, :3].T + pose[:3, 3]
-        directions = np.array([_tilt(-n, rng) for n in samples.normals @ pose[:3, :3].T])
-        free = ~blocked(robot, q, link, points, directions)
-        for point, direction in zip(points[free], directions[free], strict=True):
-            yield Touch(link, q, point, direction * rng.uniform(1.0, 50.0))
+        for point, direction in zip(*lines(robot, q, link, POINTS_PER_POSE, rng), strict=True):
+            yield Touch(link, q, point, direction * rng.uniform(*FORCES))
             found += 1
             if found == count:
                 return
-
-
-def blocked(
-    robot: Robot, q: FloatArray, link: str, points: FloatArray, directions: FloatArray
-) -> NDArray[np.bool_]:
-    """Whether the lines meet a surface before the points, coming along `directions`."""
-    hit = np.zeros(len(points), dtype=bool)
-    for name in robot.link_names:
-        pose = robot.link_pose(q, name)
-        local = (points - pose[:3, 3]) @ pose[:3, :3]
-        back = -directions @ pose[:3, :3]
-        hits = robot.surface(name).cast_rays(local, back)
-        near = 1e-9 if name == link else -1.0  # a surface that coincides with another is neither's
-        hit[hits.ray[hits.distance > near]] = True
-    return hit
-
-
-def _tilt(direction: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """A direction uniform in the cone of 30 degrees about `direction`."""
-    cos = rng.uniform(np.cos(CONE), 1.0)
-    turn = rng.uniform(0.0, 2 * np.pi)
-    other = np.cross(direction, [1.0, 0, 0] if abs(direction[0]) < 0.8 else [0, 1.0, 0])
-    other /= np.linalg.norm(other)
-    across = np.cos(turn) * other + np.sin(turn) * np.cross(direction, other)
-    tilted: FloatArray = cos * direction + np.sqrt(1 - cos * cos) * across
-    return tilted
 
 
 def judge(

@@ -5,7 +5,10 @@ use std::sync::Arc;
 use super::body_set::BodySet;
 use super::force::{explain_force, identify_force};
 use super::line::{best_first, LineCast};
+use super::region::Region;
 use super::result::{Candidate, Contact, Isolation};
+use super::rows::{TorqueRows, WrenchRows};
+use super::several::{Found, Scene, SeveralContacts};
 use super::wrench::{estimate_wrench, for_each_column, WrenchEstimate};
 use crate::detection::TipSearch;
 use crate::error::{Error, Result};
@@ -24,6 +27,8 @@ const EXACT_FIT: f64 = 1e-3;
 /// A contact is located if its force exceeds so many standard deviations of it, and its link's bounding radius so
 /// many of the point's. A weaker force has the direction of the torques' errors, and feigns a certain point.
 const SIGNIFICANCE: f64 = 3.0;
+/// Solutions whose points are nearer than this agree [m].
+const SAME_POINT: f64 = 0.005;
 
 /// Settings of a [`ContactIsolator`].
 #[derive(Debug, Clone)]
@@ -53,6 +58,10 @@ pub struct ContactIsolator {
     tips: TipSearch,
     bodies: BodySet,
     line: LineCast,
+    region: Region,
+    rows: TorqueRows,
+    several: SeveralContacts,
+    near: Vec<usize>,
     displaced: Vec<Candidate>,
     unexplained: Vec<f64>,
     isolation: Isolation,
@@ -82,6 +91,10 @@ impl ContactIsolator {
             tips: TipSearch::new(&robot),
             bodies: BodySet::new(&robot),
             line: LineCast::new(),
+            region: Region::whole(&robot),
+            rows: TorqueRows::new(&robot),
+            several: SeveralContacts::new(&robot, options.max_contacts),
+            near: Vec::with_capacity(robot.links().len()),
             displaced: Vec::with_capacity(CANDIDATES),
             unexplained: vec![0.0; robot.nv()],
             isolation,
@@ -109,10 +122,14 @@ impl ContactIsolator {
         self.unexplained.copy_from_slice(tau_ext);
         let threshold = &self.threshold;
         let tips = self.tips.find(&self.robot, |k| tau_ext[k].abs() > threshold[k]).len();
-        if tips == 1 {
-            self.isolate_single(kinematics, self.tips.tips()[0], tau_ext);
-        } else {
-            self.name_links(kinematics, tau_ext);
+        match tips {
+            0 => {}
+            1 if self.is_single(kinematics, self.tips.tips()[0], tau_ext) => {
+                self.isolate_single(kinematics, self.tips.tips()[0], tau_ext);
+            }
+            _ if self.isolate_several(kinematics, tau_ext) => {}
+            1 => self.isolate_single(kinematics, self.tips.tips()[0], tau_ext),
+            _ => self.name_links(kinematics, tau_ext),
         }
         self.isolation.residual = self.unexplained.iter().map(|x| x * x).sum::<f64>().sqrt();
         &self.isolation
@@ -126,6 +143,101 @@ impl ContactIsolator {
     /// Forgets the last answer.
     pub fn clear(&mut self) {
         self.isolation.clear();
+    }
+
+    /// Whether one force explains the torques but for rounding; also where too few joints feel it to tell.
+    fn is_single(&self, kinematics: &Kinematics, tip: usize, tau_ext: &[f64]) -> bool {
+        let wrench = estimate_wrench(&self.robot, kinematics, tip, tau_ext, &self.threshold);
+        wrench.rank < 6 || wrench.misfit() <= EXACT_FIT
+    }
+
+    /// Several forces that explain the torques; false where none are found, or one force explains them well enough.
+    fn isolate_several(&mut self, kinematics: &Kinematics, tau_ext: &[f64]) -> bool {
+        let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
+        self.rows.set(&self.robot, kinematics, tau_ext, &self.threshold);
+        let solved = self.several.solve_exactly(scene, &mut self.rows);
+        if !(solved && self.several.verified) {
+            self.rows.set(&self.robot, kinematics, tau_ext, &self.threshold);
+            if let [tip] = self.tips.tips() {
+                let mut rows = WrenchRows::new();
+                for joint in self.region.chain(&self.robot, *tip) {
+                    self.rows.push_joint(&self.robot, joint, &mut rows);
+                }
+                if WrenchEstimate::from_rows(rows, nalgebra::Vector3::zeros()).misfit() <= CONTRADICTION {
+                    return false;
+                }
+            }
+            if !solved && !self.several.solve_roughly(scene, &self.rows, self.tips.tips()) {
+                return false;
+            }
+        }
+        self.rows.set(&self.robot, kinematics, tau_ext, &self.threshold);
+        self.several.identify(scene, &self.rows);
+        self.report_several(kinematics);
+        true
+    }
+
+    /// Contacts that were found together, farthest from the base first.
+    fn report_several(&mut self, kinematics: &Kinematics) {
+        for index in 0..self.several.found.len() {
+            let found = self.several.found[index].clone();
+            self.report_found(kinematics, &found, true);
+        }
+        for side in [1, 0] {
+            let Some(best) = self.several.solutions.first() else { break };
+            let found = best.contacts[side].clone();
+            let others = self.several.solutions.iter().skip(1).map(|other| other.contacts[side].hit);
+            let agree = others.clone().all(|hit| (hit.point - found.hit.point).norm() < SAME_POINT);
+            let determined = agree && self.several.verified && !self.several.open;
+            if !agree {
+                self.isolation.candidates.push(found.hit);
+                self.isolation.candidates.extend(others);
+            }
+            self.report_found(kinematics, &found, determined);
+        }
+        self.isolation.rank_deficit = self.several.rank_deficit;
+        // Tolerances are wider than the thresholds; what contradicts those is not located.
+        if self.unexplained_share() > CONTRADICTION {
+            self.isolation.contacts.iter_mut().for_each(|contact| contact.located = false);
+        }
+    }
+
+    /// Root mean square of what is not explained, in thresholds.
+    fn unexplained_share(&self) -> f64 {
+        let squares =
+            self.unexplained.iter().zip(&self.threshold).map(|(torque, limit)| (torque / limit).powi(2));
+        (squares.sum::<f64>() / self.threshold.len() as f64).sqrt()
+    }
+
+    fn report_found(&mut self, kinematics: &Kinematics, found: &Found, determined: bool) {
+        let (wrench, hit) = (&found.wrench, &found.hit);
+        let robot = self.robot.clone();
+        let body = robot.links[hit.link].body;
+        let at = hit.point - kinematics.origin;
+        self.near.clear();
+        self.near.extend_from_slice(robot.links_of_body(body));
+        let neighbours = (1..robot.body_count())
+            .filter(|other| robot.parent_body(*other) == body || *other == robot.parent_body(body));
+        self.near.extend(neighbours.flat_map(|other| robot.links_of_body(other)));
+        explain_force(&robot, kinematics, body, &at, &found.force, &mut self.unexplained);
+        let point_std = self.spread(kinematics, wrench, hit);
+        let size = robot.links[hit.link].surface.as_ref().map_or(0.0, |surface| surface.bounding_sphere().1);
+        let candidates = self.isolation.contacts.last().map_or(0, |last| last.candidates.end);
+        if self.isolation.candidates.len() == candidates {
+            self.isolation.candidates.push(*hit);
+        }
+        let pose = kinematics.link_pose(&robot, hit.link);
+        let mut contact = Contact::unlocated(hit.link);
+        contact.point = hit.point;
+        contact.point_local = pose.inverse_transform_point(&hit.point);
+        contact.normal = hit.normal;
+        contact.force = found.force;
+        contact.wrench = stack(&found.force, &(hit.point - pose.translation).cross(&found.force));
+        contact.point_std = point_std;
+        contact.candidates = candidates..self.isolation.candidates.len();
+        contact.located = determined && self.pushing && SIGNIFICANCE * point_std < size;
+        self.isolation.contacts.push(contact);
+        self.isolation.link_candidates.push(hit.link);
     }
 
     /// A force on one branch: steps 1 to 4, repeated with the link that was hit.
@@ -228,13 +340,8 @@ impl ContactIsolator {
         let force =
             identify_force(robot, kinematics, body, &at, tau_ext, &self.threshold).unwrap_or(wrench.force);
         explain_force(robot, kinematics, body, &at, &force, &mut self.unexplained);
-        let squares = self
-            .unexplained
-            .iter()
-            .zip(&self.threshold)
-            .map(|(torque, threshold)| (torque / threshold).powi(2));
-        let unexplained = (squares.sum::<f64>() / self.threshold.len() as f64).sqrt();
-        let consistent = wrench.misfit() <= CONTRADICTION && unexplained <= CONTRADICTION;
+        let consistent = wrench.misfit() <= CONTRADICTION && self.unexplained_share() <= CONTRADICTION;
+        self.near.clone_from(&self.isolation.link_candidates);
         let point_std = self.spread(kinematics, wrench, hit);
         let (robot, link) = (&self.robot, &self.robot.links[hit.link]);
         let size = link.surface.as_ref().map_or(0.0, |surface| surface.bounding_sphere().1);
@@ -263,7 +370,7 @@ impl ContactIsolator {
         for displacement in displacements.iter().flat_map(|step| [step * 2.0, step * -2.0]) {
             self.displaced.clear();
             let start = at + displacement;
-            for &link in &self.isolation.link_candidates {
+            for &link in &self.near {
                 self.line.cast(&self.robot, kinematics, link, &start, &direction, &mut self.displaced);
             }
             let entering = self.displaced.iter().filter(|other| other.pushing);

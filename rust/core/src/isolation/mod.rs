@@ -1,10 +1,19 @@
 //! Isolation and identification: where a contact is and how hard (Vorndamme 2017, section IV).
 
 mod body_set;
+mod conics;
 mod force;
 mod isolator;
+mod least_squares;
 mod line;
+mod open_part;
+mod pair;
+mod region;
 mod result;
+mod rows;
+mod several;
+mod stacked;
+mod surface_search;
 mod wrench;
 
 pub use isolator::{ContactIsolator, IsolatorOptions};

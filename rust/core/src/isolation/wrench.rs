@@ -1,16 +1,15 @@
 //! The wrench on one body by the weighted pseudoinverse of its Jacobian (Vorndamme 2017, eq. 23).
 
-use nalgebra::{Matrix3x6, Matrix6, SMatrix, Vector3, Vector6};
+use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
 
+use super::rows::{WrenchRows, LEVER};
 use crate::robot::motion::{motion_axis, split, stack};
 use crate::robot::{Kinematics, Robot};
 
-/// Balances moments against forces in the rank decision: a typical lever arm [m].
-const LEVER: f64 = 0.3;
 /// Singular values below this share of the largest count as zero.
-const RANK_TOLERANCE: f64 = 1e-7;
+pub(super) const RANK_TOLERANCE: f64 = 1e-7;
 /// An SVD of a finite 6 x 6 matrix converges within a few sweeps; this bounds the time.
-const SVD_ITERATIONS: usize = 200;
+pub(super) const SVD_ITERATIONS: usize = 200;
 /// Thresholds are set well above the noise: a torque's standard deviation is a third of its threshold, and less only
 /// where redundant torques agree better. Chance makes them agree: never less than a hundredth of that.
 const DEVIATION_AT_MOST: f64 = 1.0 / 3.0;
@@ -18,8 +17,6 @@ const DEVIATION_AT_LEAST: f64 = DEVIATION_AT_MOST / 100.0;
 /// By how much a standard deviation estimated from 1, 2, ... redundant torques can be too small (in 99 of 100 cases,
 /// from the chi distribution).
 const CAUTION: [f64; 5] = [80.0, 10.0, 5.1, 3.7, 3.0];
-/// Rows that one factorisation takes in: six of the triangle so far and six new ones.
-const BLOCK: usize = 12;
 
 /// What the torques of a chain say of a wrench on its last body.
 #[derive(Debug, Clone)]
@@ -75,57 +72,22 @@ pub(super) fn estimate_wrench(
     threshold: &[f64],
 ) -> WrenchEstimate {
     let reference = kinematics.bodies[body].position;
-    let mut rows = SMatrix::<f64, BLOCK, 7>::zeros();
-    let (mut filled, mut count, mut unexplained) = (0, 0, 0.0);
+    let mut rows = WrenchRows::new();
     for_each_column(robot, kinematics, body, &reference, |k, column| {
-        if filled == BLOCK {
-            rows = triangle(rows, &mut unexplained);
-            filled = 6;
-        }
-        let weight = 1.0 / threshold[k];
-        let axis = column * weight;
-        for i in 0..3 {
-            rows[(filled, i)] = axis[i];
-            rows[(filled, 3 + i)] = axis[3 + i] / LEVER;
-        }
-        rows[(filled, 6)] = torque[k] * weight;
-        filled += 1;
-        count += 1;
+        rows.push(&column, torque[k], 1.0 / threshold[k]);
     });
-    let rows = triangle(rows, &mut unexplained);
-    let factor: Matrix6<f64> = rows.fixed_view::<6, 6>(0, 0).into_owned();
-    let rhs: Vector6<f64> = rows.fixed_view::<6, 1>(0, 6).into_owned();
-    let (solution, mut root, rank) = match full_rank_inverse(&factor) {
-        Some(inverse) => (inverse * rhs, inverse, 6),
-        None => minimum_norm(&factor, &rhs),
-    };
-    for i in 3..6 {
-        root.row_mut(i).unscale_mut(LEVER);
-    }
-    let (force, moment) = split(&solution);
-    let redundant = usize::saturating_sub(count, 6);
-    WrenchEstimate { force, moment: moment / LEVER, reference, rank, root, unexplained, redundant }
-}
-
-/// The triangle of a QR factorisation in the upper rows, zeros below; what the right side leaves over is added to
-/// `unexplained`.
-fn triangle(rows: SMatrix<f64, BLOCK, 7>, unexplained: &mut f64) -> SMatrix<f64, BLOCK, 7> {
-    let upper = rows.qr().r();
-    *unexplained += upper[(6, 6)] * upper[(6, 6)];
-    let mut out = SMatrix::<f64, BLOCK, 7>::zeros();
-    out.fixed_view_mut::<6, 7>(0, 0).copy_from(&upper.fixed_view::<6, 7>(0, 0));
-    out
+    WrenchEstimate::from_rows(rows, reference)
 }
 
 /// The inverse of a triangle that is safely regular: its norm bounds the smallest singular value from below.
-fn full_rank_inverse(factor: &Matrix6<f64>) -> Option<Matrix6<f64>> {
+pub(super) fn full_rank_inverse(factor: &Matrix6<f64>) -> Option<Matrix6<f64>> {
     let inverse = factor.solve_upper_triangular(&Matrix6::identity())?;
     let condition = factor.norm() * inverse.norm();
     (condition.is_finite() && condition < 1.0 / RANK_TOLERANCE).then_some(inverse)
 }
 
 /// Minimum-norm solution, its covariance root and the rank.
-fn minimum_norm(factor: &Matrix6<f64>, rhs: &Vector6<f64>) -> (Vector6<f64>, Matrix6<f64>, usize) {
+pub(super) fn minimum_norm(factor: &Matrix6<f64>, rhs: &Vector6<f64>) -> (Vector6<f64>, Matrix6<f64>, usize) {
     let Some(svd) = factor.try_svd(true, true, f64::EPSILON, SVD_ITERATIONS) else {
         return (Vector6::zeros(), Matrix6::zeros(), 0);
     };
@@ -138,6 +100,35 @@ fn minimum_norm(factor: &Matrix6<f64>, rhs: &Vector6<f64>) -> (Vector6<f64>, Mat
 }
 
 impl WrenchEstimate {
+    /// Least squares; minimum norm where the rows leave the wrench open.
+    pub fn from_rows(mut rows: WrenchRows, reference: Vector3<f64>) -> Self {
+        let triangle = rows.triangle();
+        let factor: Matrix6<f64> = triangle.fixed_view::<6, 6>(0, 0).into_owned();
+        let rhs: Vector6<f64> = triangle.fixed_view::<6, 1>(0, 6).into_owned();
+        let (solution, root, rank) = match full_rank_inverse(&factor) {
+            Some(inverse) => (inverse * rhs, inverse, 6),
+            None => minimum_norm(&factor, &rhs),
+        };
+        let redundant = rows.count.saturating_sub(6);
+        Self::new(&solution, root, reference, rank, rows.unexplained, redundant)
+    }
+
+    /// Of a solution and its covariance's root whose moments are scaled by the lever.
+    pub fn new(
+        solution: &Vector6<f64>,
+        mut root: Matrix6<f64>,
+        reference: Vector3<f64>,
+        rank: usize,
+        unexplained: f64,
+        redundant: usize,
+    ) -> Self {
+        for i in 3..6 {
+            root.row_mut(i).unscale_mut(LEVER);
+        }
+        let (force, moment) = split(solution);
+        Self { force, moment: moment / LEVER, reference, rank, root, unexplained, redundant }
+    }
+
     /// The point of the line of action nearest to `reference` (Vorndamme 2017, eq. 26), and its direction.
     pub fn line_of_action(&self) -> Option<(Vector3<f64>, Vector3<f64>)> {
         let size = self.force.norm();
@@ -184,11 +175,21 @@ impl WrenchEstimate {
 
     /// Root mean square of what contradicts a single force without moment, in thresholds.
     pub fn misfit(&self) -> f64 {
+        let moment = self.moment_along();
+        ((self.unexplained + moment * moment) / (self.redundant + 1) as f64).sqrt()
+    }
+
+    /// The moment along the force, in standard deviations of it for torques that err by one tolerance: a force on a
+    /// line has none.
+    pub fn moment_along(&self) -> f64 {
         let size = self.force.norm();
         let along = self.force.dot(&self.moment) / size;
         let gradient = stack(&(self.moment / size), &(self.force / size));
         let deviation = self.root.tr_mul(&gradient).norm();
-        let moment = if deviation > 0.0 { along / deviation } else { 0.0 };
-        ((self.unexplained + moment * moment) / (self.redundant + 1) as f64).sqrt()
+        if deviation > 0.0 {
+            along / deviation
+        } else {
+            0.0
+        }
     }
 }

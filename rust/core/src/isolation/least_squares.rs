@@ -1,0 +1,191 @@
+//! Dense least squares in a buffer of its own: Householder's factorisation with column pivoting. nalgebra's would
+//! allocate at every call.
+
+/// `matrix x = rhs`, filled row by row.
+#[derive(Debug, Clone)]
+pub(super) struct LeastSquares {
+    /// By columns, each of `capacity` rows; the right side comes last.
+    entries: Vec<f64>,
+    capacity: usize,
+    columns: usize,
+    rows: usize,
+    pivots: Vec<usize>,
+    rank: usize,
+}
+
+impl LeastSquares {
+    /// Space for so many rows and columns.
+    pub fn new(rows: usize, columns: usize) -> Self {
+        Self {
+            entries: vec![0.0; rows * (columns + 1)],
+            capacity: rows,
+            columns: 0,
+            rows: 0,
+            pivots: vec![0; columns],
+            rank: 0,
+        }
+    }
+
+    /// Starts a system of `columns` unknowns.
+    pub fn reset(&mut self, columns: usize) {
+        self.columns = columns.min(self.pivots.len());
+        self.rows = 0;
+        self.rank = 0;
+    }
+
+    /// Adds a row of zeros with its right side; to be filled by [`LeastSquares::set`].
+    pub fn add_row(&mut self, rhs: f64) {
+        if self.rows < self.capacity {
+            self.rows += 1;
+            let row = self.rows - 1;
+            for column in 0..self.columns {
+                self.entries[column * self.capacity + row] = 0.0;
+            }
+            self.entries[self.columns * self.capacity + row] = rhs;
+        }
+    }
+
+    /// An entry of the last row.
+    pub fn set(&mut self, column: usize, value: f64) {
+        self.entries[column * self.capacity + self.rows - 1] = value;
+    }
+
+    /// Factorises; singular directions smaller than `tolerance` of the largest count as open.
+    pub fn factorise(&mut self, tolerance: f64) {
+        let Self { entries, capacity, columns, rows, pivots, rank } = self;
+        let (capacity, columns, rows) = (*capacity, *columns, *rows);
+        pivots.iter_mut().enumerate().for_each(|(i, pivot)| *pivot = i);
+        *rank = 0;
+        let mut largest = 0.0_f64;
+        for k in 0..columns.min(rows) {
+            let square = |column: usize| -> f64 {
+                entries[column * capacity + k..column * capacity + rows].iter().map(|x| x * x).sum()
+            };
+            let (best, size) = (k..columns)
+                .map(|column| (column, square(column)))
+                .fold((k, -1.0), |best, other| if other.1 > best.1 { other } else { best });
+            let size = size.sqrt();
+            largest = largest.max(size);
+            // Also where the size is not a number.
+            if !(size > tolerance * largest) {
+                break;
+            }
+            if best != k {
+                pivots.swap(best, k);
+                for row in 0..rows {
+                    entries.swap(best * capacity + row, k * capacity + row);
+                }
+            }
+            let (left, right) = entries.split_at_mut((k + 1) * capacity);
+            let reflector = &mut left[k * capacity + k..k * capacity + rows];
+            let diagonal = -size.copysign(reflector[0]);
+            reflector[0] -= diagonal;
+            let scale = -1.0 / (diagonal * reflector[0]);
+            for column in right.chunks_exact_mut(capacity).take(columns - k) {
+                let column = &mut column[k..rows];
+                let share: f64 = scale * reflector.iter().zip(&*column).map(|(a, b)| a * b).sum::<f64>();
+                column.iter_mut().zip(&*reflector).for_each(|(x, a)| *x -= share * a);
+            }
+            reflector[0] = diagonal;
+            *rank = k + 1;
+        }
+    }
+
+    /// How many combinations of the unknowns the rows determine.
+    pub fn rank(&self) -> usize {
+        self.rank
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// A solution (the unknowns that are not determined zero) into `x`; returns the sum of squares left over.
+    pub fn solve(&self, x: &mut [f64]) -> f64 {
+        let rhs = self.columns * self.capacity;
+        x[..self.columns].fill(0.0);
+        self.back_substitute(x, |row| self.entries[rhs + row]);
+        self.entries[rhs + self.rank..rhs + self.rows].iter().map(|r| r * r).sum()
+    }
+
+    /// The `index`-th direction that the rows leave open, into `x`.
+    pub fn open_direction(&self, index: usize, x: &mut [f64]) {
+        let column = self.rank + index;
+        x[..self.columns].fill(0.0);
+        self.back_substitute(x, |row| -self.entries[column * self.capacity + row]);
+        x[self.pivots[column]] = 1.0;
+    }
+
+    /// The `index`-th column of a root of the solution's covariance (for rows of unit variance), into `x`.
+    pub fn covariance_root(&self, index: usize, x: &mut [f64]) {
+        x[..self.columns].fill(0.0);
+        self.back_substitute(x, |row| f64::from(row == index));
+    }
+
+    /// Solves the triangle for a right side.
+    fn back_substitute(&self, x: &mut [f64], rhs: impl Fn(usize) -> f64) {
+        for row in (0..self.rank).rev() {
+            let mut value = rhs(row);
+            for column in row + 1..self.rank {
+                value -= self.entries[column * self.capacity + row] * x[self.pivots[column]];
+            }
+            x[self.pivots[row]] = value / self.entries[row * self.capacity + row];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{DMatrix, DVector};
+    use proptest::prelude::*;
+
+    fn system(matrix: &DMatrix<f64>, rhs: &DVector<f64>) -> LeastSquares {
+        let mut system = LeastSquares::new(matrix.nrows(), matrix.ncols());
+        system.reset(matrix.ncols());
+        for (row, value) in matrix.row_iter().zip(rhs.iter()) {
+            system.add_row(*value);
+            row.iter().enumerate().for_each(|(column, value)| system.set(column, *value));
+        }
+        system.factorise(1e-9);
+        system
+    }
+
+    proptest! {
+        #[test]
+        fn agrees_with_a_pseudoinverse(entries in prop::collection::vec(-1.0..1.0, 70), deficit in 0_usize..3) {
+            let mut matrix = DMatrix::from_column_slice(9, 7, &entries[..63]);
+            for k in 0..deficit {
+                let copy = matrix.column(k) * 2.0 - matrix.column(3);
+                matrix.set_column(6 - k, &copy);
+            }
+            let rhs = DVector::from_column_slice(&entries[61..70]);
+            let system = system(&matrix, &rhs);
+            prop_assert_eq!(system.rank(), 7 - deficit);
+            let mut x = vec![0.0; 7];
+            let left = system.solve(&mut x);
+            let expected = matrix.clone().pseudo_inverse(1e-9).expect("positive") * &rhs;
+            let residual = &rhs - &matrix * DVector::from_column_slice(&x);
+            let best = &rhs - &matrix * &expected;
+            prop_assert!((residual.norm() - best.norm()).abs() < 1e-8);
+            prop_assert!((left - best.norm_squared()).abs() < 1e-8);
+            for index in 0..deficit {
+                system.open_direction(index, &mut x);
+                let direction = DVector::from_column_slice(&x);
+                prop_assert!((&matrix * &direction).norm() < 1e-8 * direction.norm());
+            }
+            if deficit == 0 {
+                prop_assert!((DVector::from_column_slice(&x) - expected).norm() < 1e-6);
+                let mut covariance = DMatrix::zeros(7, 7);
+                for index in 0..7 {
+                    system.covariance_root(index, &mut x);
+                    let root = DVector::from_column_slice(&x);
+                    covariance += &root * root.transpose();
+                }
+                let identity = covariance * matrix.tr_mul(&matrix);
+                prop_assert!((identity - DMatrix::identity(7, 7)).norm() < 1e-4);
+            }
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! What the signals of one instant say of wrenches: a row for every joint torque, all about one reference point.
+
+use nalgebra::{SMatrix, Vector3, Vector6};
+
+use super::region::Region;
+use super::wrench::{jacobian_column, WrenchEstimate};
+use crate::robot::motion::stack;
+use crate::robot::{Kinematics, Robot};
+
+/// Balances moments against forces in rank decisions: a typical lever arm [m].
+pub(super) const LEVER: f64 = 0.3;
+/// Sensors and models err by a part of what they measure, too: three standard deviations, as the threshold is.
+const TORQUE_SHARE: f64 = 0.03;
+/// And a part of what the strongest joint feels; it also keeps weights of similar size, as rank decisions need.
+const LARGEST_SHARE: f64 = 0.003;
+/// Rows that one factorisation takes in: six of the triangle so far and six new ones.
+const BLOCK: usize = 12;
+
+/// Columns of the Jacobian about the kinematics' origin, torques and their tolerances, by velocity variable.
+#[derive(Debug, Clone)]
+pub(super) struct TorqueRows {
+    pub axes: Vec<Vector6<f64>>,
+    /// What is not explained yet.
+    pub torque: Vec<f64>,
+    /// The threshold, widened by a share of the torque.
+    pub tolerance: Vec<f64>,
+    /// The total wrench about the origin where a sensor gives it, and its tolerance.
+    pub root: Option<(Vector6<f64>, Vector6<f64>)>,
+}
+
+impl TorqueRows {
+    pub fn new(robot: &Robot) -> Self {
+        let nv = robot.nv();
+        Self { axes: vec![Vector6::zeros(); nv], torque: vec![0.0; nv], tolerance: vec![1.0; nv], root: None }
+    }
+
+    pub fn set(&mut self, robot: &Robot, kinematics: &Kinematics, torque: &[f64], threshold: &[f64]) {
+        let reference = Vector3::zeros();
+        for body in 1..robot.body_count() {
+            for (column, k) in robot.velocity_range(body).enumerate() {
+                self.axes[k] = jacobian_column(robot, kinematics, body, column, &reference);
+            }
+        }
+        self.torque.copy_from_slice(torque);
+        let largest = torque.iter().fold(0.0_f64, |largest, torque| largest.max(torque.abs()));
+        for ((tolerance, torque), threshold) in self.tolerance.iter_mut().zip(torque).zip(threshold) {
+            *tolerance = (TORQUE_SHARE * torque).hypot(*threshold).hypot(LARGEST_SHARE * largest);
+        }
+        self.root = None;
+    }
+
+    /// Takes what a wrench on `body` explains out of the torques.
+    pub fn explain(&mut self, robot: &Robot, region: &Region, body: usize, wrench: &WrenchEstimate) {
+        for joint in region.chain(robot, body) {
+            for k in robot.velocity_range(joint) {
+                self.torque[k] -= wrench.torque_on(&self.axes[k]);
+            }
+        }
+        if let Some((total, _)) = &mut self.root {
+            *total -= stack(&wrench.force, &wrench.moment);
+        }
+    }
+
+    /// Adds the rows of a joint.
+    #[inline]
+    pub fn push_joint(&self, robot: &Robot, joint: usize, rows: &mut WrenchRows) {
+        for k in robot.velocity_range(joint) {
+            rows.push(&self.axes[k], self.torque[k], 1.0 / self.tolerance[k]);
+        }
+    }
+
+    /// Adds the total wrench if there is one.
+    pub fn push_root(&self, rows: &mut WrenchRows) {
+        if let Some((wrench, tolerance)) = &self.root {
+            for i in 0..6 {
+                let mut axis = Vector6::zeros();
+                axis[i] = 1.0;
+                rows.push(&axis, wrench[i], 1.0 / tolerance[i]);
+            }
+        }
+    }
+}
+
+/// Rows that act on one wrench, reduced to a triangle as they come.
+#[derive(Debug, Clone)]
+pub(super) struct WrenchRows {
+    rows: SMatrix<f64, BLOCK, 7>,
+    filled: usize,
+    pub count: usize,
+    /// Sum of squares that no wrench explains.
+    pub unexplained: f64,
+}
+
+impl WrenchRows {
+    pub fn new() -> Self {
+        Self { rows: SMatrix::zeros(), filled: 0, count: 0, unexplained: 0.0 }
+    }
+
+    /// A torque with its column and weight.
+    #[inline]
+    pub fn push(&mut self, axis: &Vector6<f64>, torque: f64, weight: f64) {
+        if self.filled == BLOCK {
+            self.reduce();
+        }
+        for i in 0..3 {
+            self.rows[(self.filled, i)] = axis[i] * weight;
+            self.rows[(self.filled, 3 + i)] = axis[3 + i] * weight / LEVER;
+        }
+        self.rows[(self.filled, 6)] = torque * weight;
+        self.filled += 1;
+        self.count += 1;
+    }
+
+    /// The upper triangle of a QR factorisation and its right side; moments scaled by [`LEVER`].
+    pub fn triangle(&mut self) -> SMatrix<f64, 6, 7> {
+        self.reduce();
+        self.rows.fixed_view::<6, 7>(0, 0).into_owned()
+    }
+
+    /// What the right side leaves over is added to `unexplained`.
+    fn reduce(&mut self) {
+        let upper = self.rows.qr().r();
+        self.unexplained += upper[(6, 6)] * upper[(6, 6)];
+        self.rows.fill(0.0);
+        self.rows.fixed_view_mut::<6, 7>(0, 0).copy_from(&upper.fixed_view::<6, 7>(0, 0));
+        self.filled = 6;
+    }
+}

@@ -1,0 +1,468 @@
+//! Which bodies are touched if one force does not explain the torques, and where (Vorndamme 2017, IV-B, and beyond).
+//!
+//! Forces that the joints behind the others determine are found one by one from the tips; two that share their joints
+//! are solved for together. What is known of contacts helps: no moment, on the surface, pushing.
+
+use nalgebra::Vector3;
+
+use super::line::{best_first, LineCast};
+use super::open_part::{close, close_near};
+use super::pair::{estimate_pair, Open, PairEstimate};
+use super::region::Region;
+use super::result::Candidate;
+use super::rows::{TorqueRows, WrenchRows};
+use super::stacked::Stacked;
+use super::surface_search::{steepness, SurfaceSearch, STARTS};
+use super::wrench::WrenchEstimate;
+use crate::detection::TipSearch;
+use crate::robot::{Kinematics, Robot, WORLD};
+
+/// What rounding leaves of an exact solution [tolerances].
+const EXACT: f64 = 1e-6;
+/// A joint that feels less than this feels nothing, if the torques are exact [tolerances].
+const SILENT: f64 = 1e-5;
+/// Root mean square of what a good solution leaves under noise [tolerances].
+const GOOD: f64 = 1.0;
+/// Misfit of a solution between samples of the surfaces, which is not exact.
+const INEXACT: f64 = f64::INFINITY;
+/// Solutions kept.
+const SOLUTIONS: usize = 16;
+/// Hits of one line that are looked at.
+const HITS: usize = 256;
+/// Rounds until the contact links stand still; ten, as in Vorndamme 2017.
+const ROUNDS: usize = 10;
+
+/// A contact that is found.
+#[derive(Debug, Clone)]
+pub(super) struct Found {
+    pub wrench: WrenchEstimate,
+    pub hit: Candidate,
+    /// Of all torques, with the point known; else that of the wrench.
+    pub force: Vector3<f64>,
+}
+
+impl Found {
+    fn new(wrench: WrenchEstimate, hit: Candidate) -> Self {
+        let force = wrench.force;
+        Self { wrench, hit, force }
+    }
+}
+
+/// One way to explain the torques by two forces.
+#[derive(Debug, Clone)]
+pub(super) struct Solution {
+    pub contacts: [Found; 2],
+    pub misfit: f64,
+    steepness: f64,
+}
+
+/// Where the search is.
+#[derive(Clone, Copy)]
+pub(super) struct Scene<'a> {
+    pub robot: &'a Robot,
+    pub kinematics: &'a Kinematics,
+    pub region: &'a Region,
+}
+
+/// Workspace, and the answer: contacts found one by one, and solutions for two more, best first.
+#[derive(Debug, Clone)]
+pub(super) struct SeveralContacts {
+    pub found: Vec<Found>,
+    pub solutions: Vec<Solution>,
+    /// Of the solutions.
+    pub rank_deficit: usize,
+    /// Whether more conditions were met than unknowns were fitted.
+    pub verified: bool,
+    /// Whether more components are open than two forces on lines have conditions: the solutions are samples.
+    pub open: bool,
+    max_contacts: usize,
+    tips: TipSearch,
+    line: LineCast,
+    hits: Vec<Candidate>,
+    search: SurfaceSearch,
+    stacked: Stacked,
+    bodies: Vec<usize>,
+    places: Vec<(usize, Vector3<f64>)>,
+}
+
+impl SeveralContacts {
+    pub fn new(robot: &Robot, max_contacts: usize) -> Self {
+        Self {
+            found: Vec::with_capacity(max_contacts),
+            solutions: Vec::with_capacity(SOLUTIONS + 1),
+            rank_deficit: 0,
+            verified: false,
+            open: false,
+            max_contacts,
+            tips: TipSearch::new(robot),
+            line: LineCast::new(),
+            hits: Vec::with_capacity(HITS),
+            search: SurfaceSearch::new(robot),
+            stacked: Stacked::new(robot, max_contacts),
+            bodies: Vec::with_capacity(max_contacts + 1),
+            places: Vec::with_capacity(max_contacts + 2),
+        }
+    }
+
+    fn clear(&mut self) {
+        self.found.clear();
+        self.solutions.clear();
+        self.rank_deficit = 0;
+        self.verified = false;
+        self.open = false;
+    }
+
+    /// Contacts that explain the torques but for rounding. Uses up `rows`.
+    pub fn solve_exactly(&mut self, scene: Scene, rows: &mut TorqueRows) -> bool {
+        self.clear();
+        let Scene { robot, .. } = scene;
+        while self.found.len() < self.max_contacts {
+            let felt = |k: usize| rows.torque[k].abs() > SILENT * rows.tolerance[k];
+            let tips = self.tips.find(robot, felt);
+            let count = tips.len();
+            let [first, second] = [0, 1].map(|i| tips.get(i).copied().unwrap_or(WORLD));
+            match count {
+                0 => {
+                    self.verified = true;
+                    return !self.found.is_empty();
+                }
+                1 => {
+                    if self.find_last(scene, rows, first) {
+                        self.verified = true;
+                        return true;
+                    }
+                    let before = first_unexplained(scene, rows, first).map(|joint| robot.parent_body(joint));
+                    if before.is_some_and(|before| self.solve_pair(scene, rows, [before, first], EXACT)) {
+                        return true;
+                    }
+                }
+                2 => {
+                    if self.solve_pair(scene, rows, [second, first], EXACT) {
+                        return true;
+                    }
+                }
+                _ => {}
+            }
+            if !(0..count).any(|index| self.peel(scene, rows, index)) {
+                self.bodies.clear();
+                self.bodies.extend(self.tips.tips().iter().take(self.max_contacts));
+                return self.solve_together(scene, rows, EXACT);
+            }
+        }
+        false
+    }
+
+    /// Contacts that explain the torques within their tolerances. `tips` feel them.
+    pub fn solve_roughly(&mut self, scene: Scene, rows: &TorqueRows, tips: &[usize]) -> bool {
+        self.clear();
+        let solved = match *tips {
+            [tip] => {
+                let mut best: Option<(f64, usize)> = None;
+                for before in scene.region.chain(scene.robot, tip).filter(|before| *before != tip) {
+                    let solved = self.solve_pair(scene, rows, [before, tip], GOOD) && self.verified;
+                    if let (true, Some(solution)) = (solved, self.solutions.first()) {
+                        if best.is_none_or(|(misfit, _)| solution.misfit < misfit) {
+                            best = Some((solution.misfit, before));
+                        }
+                    }
+                }
+                best.is_some_and(|(_, before)| self.solve_pair(scene, rows, [before, tip], GOOD))
+            }
+            [first, second] => self.solve_pair(scene, rows, [second, first], GOOD) && self.verified,
+            _ => false,
+        };
+        if solved {
+            return true;
+        }
+        self.clear();
+        self.bodies.clear();
+        self.bodies.extend(tips.iter().take(self.max_contacts));
+        tips.len() > 1 && self.solve_together(scene, rows, GOOD)
+    }
+
+    /// Forces on all of `bodies`, or on one more before them, that explain the torques but for `limit` and are
+    /// determined by them.
+    fn solve_together(&mut self, scene: Scene, rows: &TorqueRows, limit: f64) -> bool {
+        let (found, tips) = (self.found.len(), self.bodies.len());
+        if tips < 2 || found + tips > self.max_contacts {
+            return false;
+        }
+        if self.stack(scene, rows, limit).is_some() {
+            return true;
+        }
+        if found + tips == self.max_contacts {
+            return false;
+        }
+        let mut best: Option<(f64, usize)> = None;
+        for before in 1..scene.robot.body_count() {
+            let carries = |tip: &usize| scene.region.chain(scene.robot, *tip).any(|joint| joint == before);
+            if self.bodies[..tips].contains(&before) || !self.bodies[..tips].iter().any(carries) {
+                continue;
+            }
+            self.bodies.push(before);
+            if let Some(misfit) = self.stack(scene, rows, limit) {
+                if best.is_none_or(|(least, _)| misfit < least) {
+                    best = Some((misfit, before));
+                }
+            }
+            self.found.truncate(found);
+            self.bodies.truncate(tips);
+        }
+        let Some((_, before)) = best else { return false };
+        self.bodies.push(before);
+        self.stack(scene, rows, limit).is_some()
+    }
+
+    /// Least squares for forces on `bodies`, or on bodies behind them that their lines hit; the misfit if they are
+    /// determined and explain the torques but for `limit`.
+    fn stack(&mut self, scene: Scene, rows: &TorqueRows, limit: f64) -> Option<f64> {
+        let found = self.found.len();
+        let mut bodies = std::mem::take(&mut self.bodies);
+        let mut misfit = None;
+        for _ in 0..ROUNDS {
+            if self.stacked.estimate(scene, rows, &bodies) > 0 {
+                break;
+            }
+            let Some(left) = self.stacked.misfit(limit) else { break };
+            let mut moved = false;
+            for body in &mut bodies {
+                let wrench = self.stacked.wrench(self.found.len() - found);
+                let Some(hit) = self.hit_behind(scene, rows, *body, &wrench, limit) else { break };
+                moved |= scene.robot.links[hit.link].body != *body;
+                *body = scene.robot.links[hit.link].body;
+                self.found.push(Found::new(wrench, hit));
+            }
+            if self.found.len() == found + bodies.len() && !moved {
+                misfit = Some(left);
+                break;
+            }
+            let missed = self.found.len() < found + bodies.len();
+            self.found.truncate(found);
+            if missed {
+                break;
+            }
+        }
+        self.bodies = bodies;
+        self.verified = misfit.is_some();
+        misfit
+    }
+
+    /// The forces of all contacts at their points, those of the first solution among them (Vorndamme 2017,
+    /// eqs. 29-30).
+    pub fn identify(&mut self, scene: Scene, rows: &TorqueRows) {
+        let best = self.solutions.first().into_iter().flat_map(|solution| &solution.contacts);
+        self.places.clear();
+        self.places.extend(self.found.iter().chain(best).map(|found| {
+            (scene.robot.links[found.hit.link].body, found.hit.point - scene.kinematics.origin)
+        }));
+        if !self.stacked.identify(scene, rows, &self.places) {
+            return;
+        }
+        let best = self.solutions.first_mut().into_iter().flat_map(|solution| &mut solution.contacts);
+        for (index, found) in self.found.iter_mut().chain(best).enumerate() {
+            found.force = self.stacked.force(index);
+        }
+    }
+
+    /// The last contact: all that is left is one force.
+    fn find_last(&mut self, scene: Scene, rows: &TorqueRows, tip: usize) -> bool {
+        let mut wrench_rows = WrenchRows::new();
+        rows.push_root(&mut wrench_rows);
+        for joint in scene.region.chain(scene.robot, tip) {
+            rows.push_joint(scene.robot, joint, &mut wrench_rows);
+        }
+        let wrench = WrenchEstimate::from_rows(wrench_rows, Vector3::zeros());
+        let exact = wrench.rank == 6 && wrench.misfit() <= EXACT;
+        let hit = if exact { self.hit_behind(scene, rows, tip, &wrench, EXACT) } else { None };
+        hit.map(|hit| self.found.push(Found::new(wrench, hit))).is_some()
+    }
+
+    /// A tip whose force follows from the outermost joints that feel no other tip's: takes it out of the torques.
+    fn peel(&mut self, scene: Scene, rows: &mut TorqueRows, index: usize) -> bool {
+        let Scene { robot, region, .. } = scene;
+        let tips = self.tips.tips();
+        let tip = tips[index];
+        let shared =
+            |joint: &usize| tips.iter().any(|other| *other != tip && robot.chain(*other).contains(joint));
+        let mut wrench_rows = WrenchRows::new();
+        for joint in region.chain(robot, tip).rev().take_while(|joint| !shared(joint)) {
+            rows.push_joint(robot, joint, &mut wrench_rows);
+            if wrench_rows.count < 6 {
+                continue;
+            }
+            let wrench = WrenchEstimate::from_rows(wrench_rows.clone(), Vector3::zeros());
+            if wrench.rank < 6 {
+                continue;
+            }
+            if wrench.misfit() > EXACT {
+                return false;
+            }
+            let Some(hit) = self.hit_behind(scene, rows, tip, &wrench, EXACT) else { return false };
+            rows.explain(robot, region, tip, &wrench);
+            self.found.push(Found::new(wrench, hit));
+            return true;
+        }
+        false
+    }
+
+    /// Every pair of forces on two bodies, or on bodies behind them that their lines hit, that explains the torques
+    /// but for `limit`.
+    fn solve_pair(&mut self, scene: Scene, rows: &TorqueRows, mut bodies: [usize; 2], limit: f64) -> bool {
+        self.solutions.clear();
+        if self.found.len() + 2 > self.max_contacts {
+            return false;
+        }
+        for _ in 0..ROUNDS {
+            let Some(pair) = estimate_pair(scene.robot, scene.region, rows, bodies) else { return false };
+            self.rank_deficit = pair.deficit;
+            self.verified = pair.checks() > 0;
+            self.open = pair.deficit > 2;
+            if pair.deficit > 0 {
+                self.close(scene, &pair, limit);
+                return !self.solutions.is_empty();
+            }
+            let wrenches = pair.wrenches(&[0.0; 6]);
+            let misfit = pair.misfit(&wrenches);
+            // Also where the misfit is not a number.
+            if !(misfit <= limit) {
+                return false;
+            }
+            let hits = [0, 1].map(|i| self.hit_behind(scene, rows, bodies[i], &wrenches[i], limit));
+            let [Some(first), Some(second)] = hits else { return false };
+            let hit_bodies = [first, second].map(|hit| scene.robot.links[hit.link].body);
+            if hit_bodies == bodies {
+                self.keep(wrenches, [first, second], misfit);
+                return true;
+            }
+            if hit_bodies[0] == hit_bodies[1] {
+                return false;
+            }
+            bodies = hit_bodies;
+        }
+        false
+    }
+
+    /// Closes a rank deficit by what is known of contacts.
+    fn close(&mut self, scene: Scene, pair: &PairEstimate, limit: f64) {
+        if pair.deficit <= 2 {
+            let (closed, count) = close(pair);
+            for open in &closed[..count] {
+                self.try_open(scene, pair, open, limit);
+            }
+            return;
+        }
+        if pair.misfit(&pair.wrenches(&[0.0; 6])).is_nan() {
+            return;
+        }
+        self.search.search(scene, pair);
+        for rank in 0..STARTS {
+            let Some((places, start)) = self.search.start(scene, pair, rank) else { break };
+            let exact = close_near(pair, start).is_some_and(|open| self.try_open(scene, pair, &open, limit));
+            if !exact {
+                self.keep(pair.wrenches(&start), places, INEXACT);
+            }
+        }
+        let means = self.search.means.map(|mean| mean + scene.kinematics.origin);
+        let far = |solution: &Solution| {
+            (0..2).map(|i| (solution.contacts[i].hit.point - means[i]).norm_squared()).sum::<f64>()
+        };
+        if means[0].x.is_finite() {
+            self.solutions.sort_unstable_by(|a, b| far(a).total_cmp(&far(b)));
+        }
+    }
+
+    fn try_open(&mut self, scene: Scene, pair: &PairEstimate, open: &Open, limit: f64) -> bool {
+        let wrenches = pair.wrenches(open);
+        let misfit = pair.misfit(&wrenches);
+        if !(misfit <= limit) {
+            return false;
+        }
+        let hits = [0, 1].map(|i| self.hit_on(scene, pair.bodies[i], &wrenches[i]));
+        let [Some(first), Some(second)] = hits else { return false };
+        self.keep(wrenches, [first, second], misfit);
+        true
+    }
+
+    /// Adds a solution in its place: those that push most squarely first.
+    fn keep(&mut self, wrenches: [WrenchEstimate; 2], hits: [Candidate; 2], misfit: f64) {
+        let steep: f64 = wrenches.iter().zip(&hits).map(|(w, hit)| steepness(&w.force, &hit.normal)).sum();
+        let rank = self.solutions.partition_point(|other| other.steepness <= steep);
+        if rank < SOLUTIONS {
+            let [first, second] = wrenches;
+            let contacts = [Found::new(first, hits[0]), Found::new(second, hits[1])];
+            self.solutions.insert(rank, Solution { contacts, misfit, steepness: steep });
+            self.solutions.truncate(SOLUTIONS);
+        }
+    }
+
+    /// Where the line of action enters the body.
+    fn hit_on(&mut self, scene: Scene, body: usize, wrench: &WrenchEstimate) -> Option<Candidate> {
+        let (start, direction) = wrench.line_of_action()?;
+        self.hits.clear();
+        for link in scene.region.links_of(scene.robot, body) {
+            self.line.cast(scene.robot, scene.kinematics, link, &start, &direction, &mut self.hits);
+        }
+        best_first(&mut self.hits);
+        self.hits.first().copied().filter(|hit| hit.pushing)
+    }
+
+    /// The same, or on a body behind whose joints feel what the wrench would cause, but for `limit`.
+    fn hit_behind(
+        &mut self,
+        scene: Scene,
+        rows: &TorqueRows,
+        body: usize,
+        wrench: &WrenchEstimate,
+        limit: f64,
+    ) -> Option<Candidate> {
+        let hit = self.hit_on(scene, body, wrench);
+        if hit.is_some() {
+            return hit;
+        }
+        let robot = scene.robot;
+        let agrees = |joint: usize| {
+            robot.velocity_range(joint).all(|k| {
+                (wrench.torque_on(&rows.axes[k]) - rows.torque[k]).abs()
+                    <= limit.max(SILENT) * rows.tolerance[k]
+            })
+        };
+        let behind = |other: usize| {
+            let mut chain = robot.chain(other).iter().skip_while(|joint| **joint != body).skip(1).peekable();
+            chain.peek().is_some() && chain.all(|joint| scene.region.joints[*joint] && agrees(*joint))
+        };
+        let mut best: Option<Candidate> = None;
+        for other in body + 1..robot.body_count() {
+            if behind(other) {
+                let hit = self.hit_on(scene, other, wrench);
+                best = best.into_iter().chain(hit).min_by(|a, b| a.distance.total_cmp(&b.distance));
+            }
+        }
+        best
+    }
+}
+
+/// The first joint on the way from the base to `tip` that contradicts the total wrench of the joints before it.
+fn first_unexplained(scene: Scene, rows: &TorqueRows, tip: usize) -> Option<usize> {
+    let Scene { robot, region, .. } = scene;
+    let mut wrench_rows = WrenchRows::new();
+    rows.push_root(&mut wrench_rows);
+    let mut total: Option<WrenchEstimate> = None;
+    for joint in region.chain(robot, tip) {
+        if total.is_none() && wrench_rows.count >= 6 {
+            total = Some(WrenchEstimate::from_rows(wrench_rows.clone(), Vector3::zeros()))
+                .filter(|estimate| estimate.rank == 6);
+        }
+        match &total {
+            None => rows.push_joint(robot, joint, &mut wrench_rows),
+            Some(total) => {
+                let explained = |k: usize| {
+                    (total.torque_on(&rows.axes[k]) - rows.torque[k]).abs() <= SILENT * rows.tolerance[k]
+                };
+                if !robot.velocity_range(joint).all(explained) {
+                    return Some(joint);
+                }
+            }
+        }
+    }
+    None
+}
