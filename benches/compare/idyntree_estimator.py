@@ -108,7 +108,7 @@ def on_submodels(
     parents: list[int | None],
     external: FloatArray,
 ) -> FloatArray:
-    """Wrenches of `LoadCompensator` less those of the next sensors behind, in link axes; no sensor has a pose."""
+    """Wrenches of `LoadCompensator`, for sensors without pose, less those of the next behind; link axes."""
     poses = [robot.link_pose(q, sensor.link) for sensor in sensors]
     own = external.copy()
     for child, parent in enumerate(parents):

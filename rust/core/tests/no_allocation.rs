@@ -8,6 +8,8 @@ use contactsense::isolation::{ContactIsolator, IsolatorOptions};
 use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
 use contactsense::observer::MomentumObserver;
 use contactsense::robot::Robot;
+use contactsense::sensor::{Convention, ForceTorqueSensor, LoadCompensator};
+use contactsense::spatial::Pose;
 use nalgebra::Vector3;
 
 mod common;
@@ -132,5 +134,49 @@ fn a_tick_allocates_nothing() {
         let free = (0..40).map(|_| tick(&mut monitor, None)).sum::<usize>();
         assert_eq!((contact, free), (0, 0), "monitor of {}", robot.name());
         assert!(seen > 30, "the monitor saw the contact: {seen}");
+
+        let sensors = sensors_of(&robot);
+        let readings = vec![[1.0, -2.0, 3.0, 0.1, 0.2, -0.3]; sensors.len()];
+        let mut silent = readings.clone();
+        silent[0][3] = f64::NAN;
+        let mut compensator = LoadCompensator::new(robot.clone(), &sensors).expect("valid sensors");
+        let work = || {
+            for row in [&readings, &silent] {
+                black_box(compensator.update(&q, &v, &v, row).expect("valid input"));
+            }
+        };
+        assert_eq!(allocations(work), 0, "compensator of {}", robot.name());
+
+        let options = MonitorOptions {
+            wanted_contacts: vec![sensors[0].name.clone()],
+            sensors,
+            bias_time_constant: Some(0.02),
+            ..MonitorOptions::new(1e-3)
+        };
+        let mut monitor = ContactMonitor::new(robot.clone(), &options).expect("valid options");
+        monitor.update(&q, &v, &tau, None, Some(&readings)).expect("valid input");
+        monitor.report_into(&mut report);
+        let work = || {
+            for k in 0..40 {
+                let row = if k % 10 == 9 { &silent } else { &readings };
+                monitor.update(&q, &v, &tau, None, Some(row)).expect("valid input");
+            }
+        };
+        assert_eq!(allocations(work), 0, "monitor of {} with sensors", robot.name());
+        monitor.report_into(&mut report);
+        assert_eq!((report.sensors_left_out.len(), report.wrenches.len()), (1, readings.len()));
     }
+}
+
+/// At the second and the last link of the arm, and of each limb.
+fn sensors_of(robot: &Robot) -> Vec<ForceTorqueSensor> {
+    let is_end = |name: &str| name.ends_with("_1") || name.ends_with("_5");
+    let links = robot.links().iter().filter(|link| is_end(&link.name));
+    let sensor = |name: &String| ForceTorqueSensor {
+        name: name.clone(),
+        link: name.clone(),
+        pose: Pose::identity(),
+        convention: Convention::Load,
+    };
+    links.map(|link| sensor(&link.name)).collect()
 }

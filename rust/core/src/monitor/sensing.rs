@@ -25,7 +25,7 @@ pub(super) struct Sensing {
     settling_time: f64,
     unsettled: Vec<f64>,
     wanted_torque: Vec<f64>,
-    /// Velocity variables behind wanted sensors.
+    /// Velocity variables that wanted contacts alone load: behind wanted sensors, and at the same joint.
     behind_wanted: Vec<bool>,
     blind: Vec<bool>,
     /// Of each sensor: its external wrench without wanted contacts.
@@ -57,7 +57,12 @@ impl Sensing {
             .collect();
         let mut behind_wanted = vec![false; gain.len()];
         for body in 1..robot.body_count() {
-            if tree.before_joint(robot, body).is_some_and(|sensor| is_wanted[sensor]) {
+            let at_joint = |sensor: usize| {
+                let link = &robot.links()[tree.link(sensor)];
+                link.body == body && link.parent.is_none_or(|parent| robot.links()[parent].body != body)
+            };
+            let before = tree.before_joint(robot, body).is_some_and(|sensor| is_wanted[sensor]);
+            if before || (0..tree.len()).any(|sensor| is_wanted[sensor] && at_joint(sensor)) {
                 behind_wanted[robot.velocity_range(body)].fill(true);
             }
         }
