@@ -77,7 +77,7 @@ def test_the_collision_torque_is_that_of_the_push_alone(name: str) -> None:
     # Joints behind the feet's sensors, and at them, say nothing.
     error[:, [29, 35]] = 0.0
     assert np.abs(result.true_torque).max() > 40.0
-    # The ground gives and takes 100 N and more meanwhile; were the two of different age, tens of N would stay.
+    # The ground gives and takes 100 N and more meanwhile; of different age, tens of N would stay.
     assert error.max() < 0.4
 
 
