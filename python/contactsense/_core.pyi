@@ -174,11 +174,16 @@ class ContactIsolator:
         cls,
         robot: Robot,
         *,
+        sensors: Iterable[ForceTorqueSensor] | None = None,
         torque_threshold: ArrayLike | None = None,
+        wrench_threshold: ArrayLike | None = None,
+        wanted_contacts: Iterable[str] | None = None,
         max_contacts: int | None = None,
         pushing: bool = True,
     ) -> Self: ...
-    def isolate(self, q: ArrayLike, tau_ext: ArrayLike) -> Isolation: ...
+    def isolate(
+        self, q: ArrayLike, tau_ext: ArrayLike, wrenches: ArrayLike | None = None
+    ) -> Isolation: ...
 
 @final
 class Isolation:

@@ -147,12 +147,13 @@ fn a_tick_allocates_nothing() {
         };
         assert_eq!(allocations(work), 0, "compensator of {}", robot.name());
 
-        let options = MonitorOptions {
+        let isolation = IsolatorOptions {
             wanted_contacts: vec![sensors[0].name.clone()],
             sensors,
-            bias_time_constant: Some(0.02),
-            ..MonitorOptions::new(1e-3)
+            ..IsolatorOptions::default()
         };
+        let options =
+            MonitorOptions { isolation, bias_time_constant: Some(0.02), ..MonitorOptions::new(1e-3) };
         let mut monitor = ContactMonitor::new(robot.clone(), &options).expect("valid options");
         monitor.update(&q, &v, &tau, None, Some(&readings)).expect("valid input");
         monitor.report_into(&mut report);

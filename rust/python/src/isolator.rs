@@ -4,14 +4,16 @@ use std::sync::Arc;
 
 use contactsense::isolation::{Candidate, Contact, ContactIsolator, Isolation, IsolatorOptions};
 use contactsense::robot::Robot;
+use nalgebra::Vector6;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arrays::{whole, Vector};
+use crate::arrays::{whole, Readings, Vector};
 use crate::errors::to_python;
 use crate::observer::scalar_or_vector;
 use crate::robot::PyRobot;
+use crate::sensor::{sensor_names, sensors, wrench_thresholds};
 
 /// A place where the line of action meets a surface.
 #[pyclass(frozen, name = "Candidate", module = "contactsense._core")]
@@ -56,6 +58,7 @@ impl PyCandidate {
 #[pyclass(frozen, name = "Contact", module = "contactsense._core")]
 pub struct PyContact {
     robot: Arc<Robot>,
+    sensors: Arc<[String]>,
     contact: Contact,
     candidates: Vec<Candidate>,
 }
@@ -98,10 +101,10 @@ impl PyContact {
         PyArray1::from_slice(py, self.contact.wrench.as_slice())
     }
 
-    /// What located it: "joint torques".
+    /// What saw it: "joint torques", or the sensor's name.
     #[getter]
-    fn source(&self) -> &'static str {
-        "joint torques"
+    fn source(&self) -> &str {
+        self.contact.source.map_or("joint torques", |sensor| &self.sensors[sensor])
     }
 
     /// False: the link is known, the point is not.
@@ -118,7 +121,7 @@ impl PyContact {
         self.contact.point_std
     }
 
-    /// Every surface hit of the line of action, best first.
+    /// Where it may be, best first: every surface hit of the line of action, or several solutions' points.
     #[getter]
     fn candidates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let wrap = |candidate: &Candidate| PyCandidate { robot: self.robot.clone(), candidate: *candidate };
@@ -144,6 +147,7 @@ impl PyContact {
 #[pyclass(frozen, name = "Isolation", module = "contactsense._core")]
 pub struct PyIsolation {
     robot: Arc<Robot>,
+    sensors: Arc<[String]>,
     isolation: Isolation,
 }
 
@@ -151,10 +155,12 @@ pub struct PyIsolation {
 pub fn contacts<'py>(
     py: Python<'py>,
     robot: &Arc<Robot>,
+    sensors: &Arc<[String]>,
     isolation: &Isolation,
 ) -> PyResult<Bound<'py, PyTuple>> {
     let wrap = |contact: &Contact| PyContact {
         robot: robot.clone(),
+        sensors: sensors.clone(),
         candidates: isolation.candidates[contact.candidates.clone()].to_vec(),
         contact: contact.clone(),
     };
@@ -170,10 +176,10 @@ pub fn names<'py>(py: Python<'py>, robot: &Robot, links: &[usize]) -> PyResult<B
 
 #[pymethods]
 impl PyIsolation {
-    /// The contacts, farthest from the base first; one a branch that feels one.
+    /// The contacts, farthest from the base first.
     #[getter]
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        contacts(py, &self.robot, &self.isolation)
+        contacts(py, &self.robot, &self.sensors, &self.isolation)
     }
 
     /// Components of the contacts' wrenches that the torques leave open (Vorndamme 2017, eq. 31).
@@ -210,45 +216,80 @@ pub fn contact_count(object: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
     Ok(count as usize)
 }
 
-/// Finds the contact that explains an external torque: link, line of action, point, force (Vorndamme 2017, eqs. 22-26).
+/// Finds the contacts that explain an external torque and the wrenches that sensors see: links, points and forces.
 ///
-/// `torque_threshold`: scalar or `(nv,)` [Nm, N], default 1e-3; a joint feels a contact above it, and a third of it
-/// is the scale of the torques' errors. `max_contacts`: reported at most. `pushing`: forces push on the surface (if
-/// False the point stays open: `located` is False). Raises `InputError` that names the argument.
+/// One contact by Vorndamme 2017, eqs. 22-26; several with sensors by eq. 27, without by eqs. 28-31. Where torques
+/// leave parts of two wrenches open, it is used that a contact's force has no moment, acts on the surface and pushes;
+/// several solutions are candidates.
+///
+/// `sensors`: of `ForceTorqueSensor`, in the order of the wrenches. `torque_threshold`: scalar or `(nv,)` [Nm, N], default
+/// 1e-3; a joint feels a contact above it, and a third of it is the scale of the torques' errors. `wrench_threshold`: the
+/// same for wrenches, scalar, `(6,)` or `(n_sensors, 6)` [N, Nm], default 1e-3. `wanted_contacts`: names of sensors whose
+/// contacts are meant and not reported (eq. 20). `max_contacts`: reported at most. `pushing`: forces push on the surface
+/// (if False the point stays open: `located` is False). Raises `InputError` that names the argument.
 #[pyclass(name = "ContactIsolator", module = "contactsense._core")]
-pub struct PyContactIsolator(Arc<Robot>, ContactIsolator);
+pub struct PyContactIsolator {
+    robot: Arc<Robot>,
+    sensors: Arc<[String]>,
+    isolator: ContactIsolator,
+    wrenches: Vec<Vector6<f64>>,
+}
 
 #[pymethods]
 impl PyContactIsolator {
     #[new]
-    #[pyo3(signature = (robot, *, torque_threshold=None, max_contacts=None, pushing=true))]
+    #[pyo3(signature = (robot, *, sensors=None, torque_threshold=None, wrench_threshold=None, wanted_contacts=None,
+                        max_contacts=None, pushing=true))]
     fn new(
         robot: &Bound<'_, PyRobot>,
+        sensors: Option<&Bound<'_, PyAny>>,
         torque_threshold: Option<&Bound<'_, PyAny>>,
+        wrench_threshold: Option<&Bound<'_, PyAny>>,
+        wanted_contacts: Option<&Bound<'_, PyAny>>,
         max_contacts: Option<&Bound<'_, PyAny>>,
         pushing: bool,
     ) -> PyResult<Self> {
-        let threshold =
-            torque_threshold.map_or(Ok(vec![1e-3]), |object| scalar_or_vector("torque_threshold", object))?;
-        let max_contacts = contact_count(max_contacts)?;
-        let options = IsolatorOptions { torque_threshold: threshold, max_contacts, pushing };
-        let arc = robot.get().0.clone();
-        let isolator = ContactIsolator::new(arc.clone(), &options);
-        Ok(Self(arc, isolator.map_err(|error| to_python(robot.py(), error))?))
+        let mut options =
+            IsolatorOptions { max_contacts: contact_count(max_contacts)?, pushing, ..Default::default() };
+        if let Some(sensors) = sensors {
+            options.sensors = self::sensors(sensors)?;
+        }
+        if let Some(threshold) = torque_threshold {
+            options.torque_threshold = scalar_or_vector("torque_threshold", threshold)?;
+        }
+        if let Some(threshold) = wrench_threshold {
+            options.wrench_threshold = wrench_thresholds(threshold)?;
+        }
+        if let Some(wanted) = wanted_contacts {
+            options.wanted_contacts = sensor_names(wanted)?;
+        }
+        let shared = robot.get().0.clone();
+        let isolator = ContactIsolator::new(shared.clone(), &options);
+        let isolator = isolator.map_err(|error| to_python(robot.py(), error))?;
+        let sensors = isolator.sensors().names().into();
+        Ok(Self { robot: shared, sensors, isolator, wrenches: vec![] })
     }
 
     /// Contacts that explain the external torque `tau_ext` `(nv,)` at the configuration `q` `(nq,)`.
     ///
-    /// Raises `InputError` that names the argument.
+    /// `wrenches` `(n_sensors, 6)`: the external wrench that each sensor sees, as `LoadCompensator` gives it: (force,
+    /// moment) at the sensor's origin, world axes [N, Nm]; a NaN in one leaves its sensor out. Raises `InputError` that
+    /// names the argument.
+    #[pyo3(signature = (q, tau_ext, wrenches=None))]
     fn isolate(
         &mut self,
         py: Python<'_>,
         q: &Bound<'_, PyAny>,
         tau_ext: &Bound<'_, PyAny>,
+        wrenches: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyIsolation> {
         let (q, tau_ext) = (Vector::new("q", q)?, Vector::new("tau_ext", tau_ext)?);
-        let isolation = self.1.isolate(q.slice(), tau_ext.slice());
+        self.wrenches.clear();
+        if let Some(wrenches) = wrenches {
+            self.wrenches.extend(Readings::new(wrenches)?.rows().iter().map(|row| Vector6::from(*row)));
+        }
+        let isolation = self.isolator.isolate_sensed(q.slice(), tau_ext.slice(), &self.wrenches);
         let isolation = isolation.map_err(|error| to_python(py, error))?.clone();
-        Ok(PyIsolation { robot: self.0.clone(), isolation })
+        Ok(PyIsolation { robot: self.robot.clone(), sensors: self.sensors.clone(), isolation })
     }
 }

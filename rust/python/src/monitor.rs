@@ -6,14 +6,14 @@ use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
 use contactsense::robot::Robot;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use pyo3::types::{PyString, PyTuple};
+use pyo3::types::PyTuple;
 
-use crate::arrays::{from_rows, rows, Number, Readings, Vector};
-use crate::errors::{input, to_python};
+use crate::arrays::{from_rows, Number, Readings, Vector};
+use crate::errors::to_python;
 use crate::isolator::{contact_count, contacts, names};
 use crate::observer::scalar_or_vector;
 use crate::robot::PyRobot;
-use crate::sensor::sensors;
+use crate::sensor::{sensor_names, sensors, wrench_thresholds};
 
 /// What the monitor says of one tick.
 #[pyclass(frozen, name = "ContactReport", module = "contactsense._core")]
@@ -92,7 +92,7 @@ impl PyContactReport {
     /// The contacts; empty while there is no collision.
     #[getter]
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        contacts(py, &self.robot, &self.report.isolation)
+        contacts(py, &self.robot, &self.sensors, &self.report.isolation)
     }
 
     fn __repr__(&self) -> String {
@@ -148,7 +148,7 @@ impl PyContactMonitor {
             options.isolation.torque_threshold = scalar_or_vector("torque_threshold", threshold)?;
         }
         if let Some(threshold) = wrench_threshold {
-            options.wrench_threshold = wrench_thresholds(threshold)?;
+            options.isolation.wrench_threshold = wrench_thresholds(threshold)?;
         }
         options.isolation.max_contacts = contact_count(max_contacts)?;
         options.isolation.pushing = pushing;
@@ -158,10 +158,10 @@ impl PyContactMonitor {
         options.bias_time_constant = bias_time_constant.map(|number| number.0);
         options.bias_settle_time = bias_settle_time.map(|number| number.0);
         if let Some(sensors) = sensors {
-            options.sensors = self::sensors(sensors)?;
+            options.isolation.sensors = self::sensors(sensors)?;
         }
         if let Some(wanted) = wanted_contacts {
-            options.wanted_contacts = sensor_names(wanted)?;
+            options.isolation.wanted_contacts = sensor_names(wanted)?;
         }
         let monitor = ContactMonitor::new(robot.get().0.clone(), &options);
         let monitor = monitor.map_err(|error| to_python(robot.py(), error))?;
@@ -197,25 +197,4 @@ impl PyContactMonitor {
     fn reset(&mut self) {
         self.monitor.reset();
     }
-}
-
-/// A scalar, or rows of six.
-fn wrench_thresholds(object: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
-    match object.extract::<f64>() {
-        Ok(number) => Ok(vec![number]),
-        Err(_) => Ok(rows::<6>("wrench_threshold", object)?.concat()),
-    }
-}
-
-fn sensor_names(object: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
-    let refused =
-        || input(object.py(), "wanted_contacts: expected an iterable of the names of sensors".into());
-    if object.is_instance_of::<PyString>() {
-        return Err(refused());
-    }
-    let mut names = vec![];
-    for item in object.try_iter().map_err(|_| refused())? {
-        names.push(item?.extract().map_err(|_| refused())?);
-    }
-    Ok(names)
 }

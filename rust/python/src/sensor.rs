@@ -4,8 +4,9 @@ use contactsense::sensor::{Convention, ForceTorqueSensor};
 use contactsense::spatial::Pose;
 use numpy::PyArray2;
 use pyo3::prelude::*;
+use pyo3::types::PyString;
 
-use crate::arrays::pose;
+use crate::arrays::{pose, rows};
 use crate::description::placement;
 use crate::errors::input;
 
@@ -44,7 +45,7 @@ impl PyForceTorqueSensor {
             }
         };
         let pose = pose.map_or(Ok(Pose::identity()), |object| {
-            let rows = crate::arrays::rows::<4>("pose", object)?;
+            let rows = rows::<4>("pose", object)?;
             if rows.len() != 4 || rows[3] != LAST_ROW {
                 return Err(input(
                     py,
@@ -106,4 +107,25 @@ pub fn sensors(object: &Bound<'_, PyAny>) -> PyResult<Vec<ForceTorqueSensor>> {
         found.push(item?.cast::<PyForceTorqueSensor>().map_err(|_| refused())?.get().0.clone());
     }
     Ok(found)
+}
+
+/// A scalar, or rows of six.
+pub fn wrench_thresholds(object: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    match object.extract::<f64>() {
+        Ok(number) => Ok(vec![number]),
+        Err(_) => Ok(rows::<6>("wrench_threshold", object)?.concat()),
+    }
+}
+
+pub fn sensor_names(object: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
+    let refused =
+        || input(object.py(), "wanted_contacts: expected an iterable of the names of sensors".into());
+    if object.is_instance_of::<PyString>() {
+        return Err(refused());
+    }
+    let mut names = vec![];
+    for item in object.try_iter().map_err(|_| refused())? {
+        names.push(item?.extract().map_err(|_| refused())?);
+    }
+    Ok(names)
 }

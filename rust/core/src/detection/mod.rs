@@ -4,6 +4,6 @@ mod detector;
 mod signal_tree;
 mod tips;
 
-pub(crate) use detector::check_threshold;
 pub use detector::Detector;
+pub(crate) use detector::{check_threshold, check_wrench_threshold};
 pub use tips::TipSearch;

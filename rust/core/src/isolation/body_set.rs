@@ -1,8 +1,10 @@
 //! The bodies that can carry a contact, given what the joints behind the contact body do not feel
 //! (Vorndamme 2017, the correction after step 4).
 
+use super::region::Region;
+use super::several::Scene;
 use super::wrench::{jacobian_column, WrenchEstimate};
-use crate::robot::{Kinematics, Robot};
+use crate::robot::Robot;
 
 /// A set of bodies, grown from a contact body away from the base.
 #[derive(Debug, Clone)]
@@ -18,14 +20,14 @@ impl BodySet {
     /// `first`, and every body behind it whose joints would not feel `wrench` more than they do.
     pub fn grow(
         &mut self,
-        robot: &Robot,
-        kinematics: &Kinematics,
+        scene: Scene,
         first: usize,
         wrench: &WrenchEstimate,
         torque: &[f64],
         threshold: &[f64],
     ) {
-        self.fill(robot, first, |body| {
+        let Scene { robot, kinematics, region } = scene;
+        self.fill(robot, region, first, |body| {
             robot.velocity_range(body).enumerate().all(|(column, k)| {
                 let axis = jacobian_column(robot, kinematics, body, column, &wrench.reference);
                 (wrench.torque_on(&axis) - torque[k]).abs() <= threshold[k]
@@ -34,22 +36,27 @@ impl BodySet {
     }
 
     /// `first` and every body behind it.
-    pub fn grow_all(&mut self, robot: &Robot, first: usize) {
-        self.fill(robot, first, |_| true);
+    pub fn grow_all(&mut self, robot: &Robot, region: &Region, first: usize) {
+        self.fill(robot, region, first, |_| true);
+    }
+
+    /// Every body, or none.
+    pub fn set_all(&mut self, member: bool) {
+        self.member.fill(member);
     }
 
     /// `first`, and every body behind a member that `joins`.
-    fn fill(&mut self, robot: &Robot, first: usize, joins: impl Fn(usize) -> bool) {
+    fn fill(&mut self, robot: &Robot, region: &Region, first: usize, joins: impl Fn(usize) -> bool) {
         self.member.fill(false);
         self.member[first] = true;
         for body in first + 1..robot.body_count() {
-            self.member[body] = self.member[robot.parent_body(body)] && joins(body);
+            self.member[body] = self.member[robot.parent_body(body)] && region.joints[body] && joins(body);
         }
     }
 
     /// The touchable links on these bodies, nearest to the base first.
-    pub fn links<'a>(&'a self, robot: &'a Robot) -> impl Iterator<Item = usize> + 'a {
+    pub fn links<'a>(&'a self, robot: &'a Robot, region: &'a Region) -> impl Iterator<Item = usize> + 'a {
         let members = self.member.iter().enumerate().filter(|(_, member)| **member);
-        members.flat_map(|(body, _)| robot.links_of_body(body).iter().copied())
+        members.flat_map(|(body, _)| region.links_of(robot, body))
     }
 }

@@ -2,7 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::wrench::for_each_column;
+use super::region::Region;
+use super::wrench::{for_each_column, jacobian_column};
 use crate::robot::motion::split;
 use crate::robot::{Kinematics, Robot};
 
@@ -25,14 +26,20 @@ pub(super) fn identify_force(
     Some(matrix.cholesky()?.solve(&rhs))
 }
 
-/// Takes what a force at `at` of `body` explains out of the unexplained torque.
+/// Takes what a force at `at` of `body` explains out of the region's unexplained torque.
 pub(super) fn explain_force(
     robot: &Robot,
     kinematics: &Kinematics,
+    region: &Region,
     body: usize,
     at: &Vector3<f64>,
     force: &Vector3<f64>,
     unexplained: &mut [f64],
 ) {
-    for_each_column(robot, kinematics, body, at, |k, column| unexplained[k] -= split(&column).0.dot(force));
+    for joint in region.chain(robot, body) {
+        for (column, k) in robot.velocity_range(joint).enumerate() {
+            let axis = jacobian_column(robot, kinematics, joint, column, at);
+            unexplained[k] -= split(&axis).0.dot(force);
+        }
+    }
 }

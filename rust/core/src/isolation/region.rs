@@ -1,19 +1,40 @@
-//! The part of the robot whose contacts one solution explains: everything, or what lies between sensors.
+//! The parts of the robot whose contacts are solved for together: everything, or what lies between sensors.
 
-use crate::robot::Robot;
+use crate::robot::{Robot, WORLD};
+use crate::sensor::SensorTree;
 
 /// Joints whose torque counts, and links that may be touched.
 #[derive(Debug, Clone)]
 pub(super) struct Region {
     /// By body: its joint's torque counts.
     pub joints: Vec<bool>,
+    /// By velocity variable: the same.
+    pub feels: Vec<bool>,
     /// By link.
     pub links: Vec<bool>,
+    /// A wanted contact may act here that no sensor measures: nothing can be told of others.
+    pub unknown: bool,
 }
 
 impl Region {
     pub fn whole(robot: &Robot) -> Self {
-        Self { joints: vec![true; robot.body_count()], links: vec![true; robot.links().len()] }
+        Self {
+            joints: vec![true; robot.body_count()],
+            feels: vec![true; robot.nv()],
+            links: vec![true; robot.links().len()],
+            unknown: false,
+        }
+    }
+
+    /// What loads a sensor directly; none: what no sensor in use carries.
+    fn set(&mut self, robot: &Robot, tree: &SensorTree, sensor: Option<usize>) {
+        for body in WORLD + 1..robot.body_count() {
+            self.joints[body] = in_use(tree, tree.before_joint(robot, body)) == sensor;
+            self.feels[robot.velocity_range(body)].fill(self.joints[body]);
+        }
+        for (link, member) in self.links.iter_mut().enumerate() {
+            *member = tree.of_link(link) == sensor;
+        }
     }
 
     /// The joints from the region's root to `body`.
@@ -24,5 +45,54 @@ impl Region {
     /// The touchable links of a body in this region.
     pub fn links_of<'a>(&'a self, robot: &'a Robot, body: usize) -> impl Iterator<Item = usize> + 'a {
         robot.links_of_body(body).iter().copied().filter(|link| self.links[*link])
+    }
+}
+
+/// The nearest sensor in use, from one towards the base.
+fn in_use(tree: &SensorTree, sensor: Option<usize>) -> Option<usize> {
+    sensor.and_then(|sensor| if tree.is_active(sensor) { Some(sensor) } else { tree.parent(sensor) })
+}
+
+/// The region of each sensor, and of what no sensor carries.
+#[derive(Debug, Clone)]
+pub(super) struct Regions {
+    pub tree: SensorTree,
+    /// Which sensors' contacts are meant, those behind such sensors included.
+    pub wanted: Vec<bool>,
+    pub base: Region,
+    pub behind: Vec<Region>,
+}
+
+impl Regions {
+    pub fn new(robot: &Robot, tree: SensorTree, wanted: Vec<bool>) -> Self {
+        let whole = Region::whole(robot);
+        let mut regions = Self { behind: vec![whole.clone(); tree.len()], base: whole, wanted, tree };
+        regions.divide(robot);
+        regions
+    }
+
+    /// Leaves out the sensors that are false in `active`.
+    pub fn set_active(&mut self, robot: &Robot, active: &[bool]) {
+        let before = |sensor| self.tree.is_active(sensor);
+        if (0..active.len()).any(|sensor| before(sensor) != active[sensor]) {
+            self.tree.set_active(active);
+            self.divide(robot);
+        }
+    }
+
+    fn divide(&mut self, robot: &Robot) {
+        let Self { tree, wanted, base, behind } = self;
+        base.set(robot, tree, None);
+        base.unknown = false;
+        for (sensor, region) in behind.iter_mut().enumerate() {
+            region.set(robot, tree, Some(sensor));
+            region.unknown = false;
+        }
+        for sensor in (0..tree.len()).filter(|sensor| wanted[*sensor] && !tree.is_active(*sensor)) {
+            match tree.parent(sensor) {
+                Some(carrier) => behind[carrier].unknown = true,
+                None => base.unknown = true,
+            }
+        }
     }
 }

@@ -34,6 +34,8 @@ pub struct Contact {
     pub normal: Vector3<f64>,
     /// Wrench (force, moment) on the robot at the link's origin, world axes [N, Nm].
     pub wrench: Vector6<f64>,
+    /// The sensor that saw it, an index into the sensors given; none: the joint torques.
+    pub source: Option<usize>,
     /// False: the link is known, the point is not.
     pub located: bool,
     /// Standard deviation of the point on the surface [m]. A torque's is taken as a third of its threshold, or as
@@ -53,6 +55,7 @@ impl Contact {
             force: unknown,
             normal: unknown,
             wrench: Vector6::repeat(f64::NAN),
+            source: None,
             located: false,
             point_std: f64::NAN,
             candidates: 0..0,

@@ -4,13 +4,12 @@ use nalgebra::{SMatrix, Vector3, Vector6};
 
 use super::region::Region;
 use super::wrench::{jacobian_column, WrenchEstimate};
-use crate::robot::motion::stack;
 use crate::robot::{Kinematics, Robot};
 
 /// Balances moments against forces in rank decisions: a typical lever arm [m].
 pub(super) const LEVER: f64 = 0.3;
 /// Sensors and models err by a part of what they measure, too: three standard deviations, as the threshold is.
-const TORQUE_SHARE: f64 = 0.03;
+pub(super) const TORQUE_SHARE: f64 = 0.03;
 /// And a part of what the strongest joint feels; it also keeps weights of similar size, as rank decisions need.
 const LARGEST_SHARE: f64 = 0.003;
 /// Rows that one factorisation takes in: six of the triangle so far and six new ones.
@@ -24,8 +23,32 @@ pub(super) struct TorqueRows {
     pub torque: Vec<f64>,
     /// The threshold, widened by a share of the torque.
     pub tolerance: Vec<f64>,
-    /// The total wrench about the origin where a sensor gives it, and its tolerance.
-    pub root: Option<(Vector6<f64>, Vector6<f64>)>,
+    /// The total wrench where a sensor gives it.
+    pub root: Option<Root>,
+}
+
+/// A sensor's wrench, component by component.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Root {
+    /// What each component says of a wrench about the origin.
+    pub axes: [Vector6<f64>; 6],
+    pub value: [f64; 6],
+    pub tolerance: [f64; 6],
+}
+
+impl Root {
+    /// The wrench that is measured.
+    pub fn estimate(&self) -> WrenchEstimate {
+        let mut rows = WrenchRows::new();
+        self.push(&mut rows);
+        WrenchEstimate::from_rows(rows, Vector3::zeros())
+    }
+
+    pub fn push(&self, rows: &mut WrenchRows) {
+        for i in 0..6 {
+            rows.push(&self.axes[i], self.value[i], 1.0 / self.tolerance[i]);
+        }
+    }
 }
 
 impl TorqueRows {
@@ -34,7 +57,15 @@ impl TorqueRows {
         Self { axes: vec![Vector6::zeros(); nv], torque: vec![0.0; nv], tolerance: vec![1.0; nv], root: None }
     }
 
-    pub fn set(&mut self, robot: &Robot, kinematics: &Kinematics, torque: &[f64], threshold: &[f64]) {
+    /// `measured` is the part of the torque that sensors have explained already: it errs, too.
+    pub fn set(
+        &mut self,
+        robot: &Robot,
+        kinematics: &Kinematics,
+        torque: &[f64],
+        measured: &[f64],
+        threshold: &[f64],
+    ) {
         let reference = Vector3::zeros();
         for body in 1..robot.body_count() {
             for (column, k) in robot.velocity_range(body).enumerate() {
@@ -43,8 +74,9 @@ impl TorqueRows {
         }
         self.torque.copy_from_slice(torque);
         let largest = torque.iter().fold(0.0_f64, |largest, torque| largest.max(torque.abs()));
-        for ((tolerance, torque), threshold) in self.tolerance.iter_mut().zip(torque).zip(threshold) {
-            *tolerance = (TORQUE_SHARE * torque).hypot(*threshold).hypot(LARGEST_SHARE * largest);
+        for (k, tolerance) in self.tolerance.iter_mut().enumerate() {
+            let shares = (TORQUE_SHARE * torque[k]).hypot(LARGEST_SHARE * largest);
+            *tolerance = shares.hypot(TORQUE_SHARE * measured[k]).hypot(threshold[k]);
         }
         self.root = None;
     }
@@ -56,8 +88,10 @@ impl TorqueRows {
                 self.torque[k] -= wrench.torque_on(&self.axes[k]);
             }
         }
-        if let Some((total, _)) = &mut self.root {
-            *total -= stack(&wrench.force, &wrench.moment);
+        if let Some(root) = &mut self.root {
+            for (value, axis) in root.value.iter_mut().zip(&root.axes) {
+                *value -= wrench.torque_on(axis);
+            }
         }
     }
 
@@ -71,12 +105,8 @@ impl TorqueRows {
 
     /// Adds the total wrench if there is one.
     pub fn push_root(&self, rows: &mut WrenchRows) {
-        if let Some((wrench, tolerance)) = &self.root {
-            for i in 0..6 {
-                let mut axis = Vector6::zeros();
-                axis[i] = 1.0;
-                rows.push(&axis, wrench[i], 1.0 / tolerance[i]);
-            }
+        if let Some(root) = &self.root {
+            root.push(rows);
         }
     }
 }

@@ -42,7 +42,7 @@ pub(super) struct Found {
 }
 
 impl Found {
-    fn new(wrench: WrenchEstimate, hit: Candidate) -> Self {
+    pub fn new(wrench: WrenchEstimate, hit: Candidate) -> Self {
         let force = wrench.force;
         Self { wrench, hit, force }
     }
@@ -118,7 +118,7 @@ impl SeveralContacts {
         let Scene { robot, .. } = scene;
         while self.found.len() < self.max_contacts {
             let felt = |k: usize| rows.torque[k].abs() > SILENT * rows.tolerance[k];
-            let tips = self.tips.find(robot, felt);
+            let tips = self.tips.find(robot, |k| scene.region.feels[k] && felt(k));
             let count = tips.len();
             let [first, second] = [0, 1].map(|i| tips.get(i).copied().unwrap_or(WORLD));
             match count {

@@ -1,10 +1,10 @@
 //! The wrenches on any number of bodies from all torques at once (Vorndamme 2017, eq. 28), and the forces at their
 //! points of contact (eqs. 29-30).
 
-use nalgebra::{Matrix6, SMatrix, Vector3, Vector6};
+use nalgebra::{Matrix6, Vector3, Vector6};
 
 use super::least_squares::LeastSquares;
-use super::rows::{TorqueRows, LEVER};
+use super::rows::{Root, TorqueRows, LEVER};
 use super::several::Scene;
 use super::wrench::{WrenchEstimate, RANK_TOLERANCE};
 use crate::robot::Robot;
@@ -39,25 +39,33 @@ impl Stacked {
     pub fn estimate(&mut self, scene: Scene, rows: &TorqueRows, bodies: &[usize]) -> usize {
         self.contacts = bodies.len();
         self.system.reset(6 * bodies.len());
-        if let Some((wrench, tolerance)) = &rows.root {
-            for i in 0..6 {
-                self.system.add_row(wrench[i] / tolerance[i]);
-                let scale = if i < 3 { 1.0 } else { 1.0 / LEVER };
-                (0..bodies.len()).for_each(|index| self.system.set(6 * index + i, scale / tolerance[i]));
+        if let Some(Root { axes, value, tolerance }) = &rows.root {
+            for ((axis, value), tolerance) in axes.iter().zip(value).zip(tolerance) {
+                self.system.add_row(value / tolerance);
+                (0..bodies.len()).for_each(|index| self.set_wrench(index, axis, 1.0 / tolerance));
             }
         }
         for_each_torque(scene, rows, bodies, |k, weight, on| {
             self.system.add_row(rows.torque[k] * weight);
             for (index, _) in bodies.iter().enumerate().filter(|(_, body)| on(**body)) {
-                for i in 0..6 {
-                    let scale = if i < 3 { weight } else { weight / LEVER };
-                    self.system.set(6 * index + i, rows.axes[k][i] * scale);
-                }
+                self.set_wrench(index, &rows.axes[k], weight);
             }
         });
         self.system.factorise(RANK_TOLERANCE);
         self.unexplained = self.system.solve(&mut self.solution);
         6 * bodies.len() - self.system.rank()
+    }
+
+    fn set_wrench(&mut self, index: usize, axis: &Vector6<f64>, weight: f64) {
+        for i in 0..6 {
+            let scale = if i < 3 { weight } else { weight / LEVER };
+            self.system.set(6 * index + i, axis[i] * scale);
+        }
+    }
+
+    fn set_force(&mut self, index: usize, axis: &Vector6<f64>, point: &Vector3<f64>, weight: f64) {
+        let velocity = axis.fixed_rows::<3>(0) + axis.fixed_rows::<3>(3).cross(point);
+        (0..3).for_each(|i| self.system.set(3 * index + i, velocity[i] * weight));
     }
 
     /// The wrench of one contact, of rank 6 where no open direction touches it.
@@ -107,25 +115,18 @@ impl Stacked {
     pub fn identify(&mut self, scene: Scene, rows: &TorqueRows, places: &[(usize, Vector3<f64>)]) -> bool {
         self.system.reset(3 * places.len());
         let bodies = places.iter().map(|(body, _)| *body);
-        if let Some((wrench, tolerance)) = &rows.root {
-            for i in 0..6 {
-                self.system.add_row(wrench[i] / tolerance[i]);
+        if let Some(Root { axes, value, tolerance }) = &rows.root {
+            for ((axis, value), tolerance) in axes.iter().zip(value).zip(tolerance) {
+                self.system.add_row(value / tolerance);
                 for (index, (_, point)) in places.iter().enumerate() {
-                    let lever: SMatrix<f64, 3, 3> = point.cross_matrix();
-                    for j in 0..3 {
-                        let entry = if i < 3 { f64::from(i == j) } else { lever[(i - 3, j)] };
-                        self.system.set(3 * index + j, entry / tolerance[i]);
-                    }
+                    self.set_force(index, axis, point, 1.0 / tolerance);
                 }
             }
         }
         for_each_torque(scene, rows, bodies, |k, weight, on| {
             self.system.add_row(rows.torque[k] * weight);
-            let axis = rows.axes[k];
-            let (linear, angular) = (axis.fixed_rows::<3>(0), axis.fixed_rows::<3>(3));
             for (index, (_, point)) in places.iter().enumerate().filter(|(_, (body, _))| on(*body)) {
-                let velocity = linear + angular.cross(point);
-                (0..3).for_each(|i| self.system.set(3 * index + i, velocity[i] * weight));
+                self.set_force(index, &rows.axes[k], point, weight);
             }
         });
         self.system.factorise(RANK_TOLERANCE);

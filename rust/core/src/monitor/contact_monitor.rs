@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::isolation::{ContactIsolator, Isolation, IsolatorOptions};
 use crate::observer::MomentumObserver;
 use crate::robot::Robot;
-use crate::sensor::{is_known, ForceTorqueSensor, SensorTree};
+use crate::sensor::{is_known, SensorTree};
 
 /// Settings of a [`ContactMonitor`].
 #[derive(Debug, Clone)]
@@ -21,18 +21,12 @@ pub struct MonitorOptions {
     pub dt: f64,
     /// Per velocity variable, or one for all [1/s].
     pub observer_gain: Vec<f64>,
-    /// Thresholds, number of contacts, pushing.
+    /// Thresholds, number of contacts, pushing, sensors.
     pub isolation: IsolatorOptions,
     /// A signal stays on for this time after it was last over its threshold [s].
     pub hold_time: f64,
     /// Time constant of the bias that is tracked while nothing touches [s]; none for no tracking.
     pub bias_time_constant: Option<f64>,
-    /// Force/torque sensors, in the order of the readings.
-    pub sensors: Vec<ForceTorqueSensor>,
-    /// Names of the sensors whose contacts are meant (feet, hands): what touches behind them is no collision.
-    pub wanted_contacts: Vec<String>,
-    /// On external wrenches: one number, 6 for every sensor, or 6 times the number of sensors [N, Nm].
-    pub wrench_threshold: Vec<f64>,
     /// With bias tracking: a torque that stands still for this long is no contact, whatever its size [s]; none: a
     /// contact may last for ever.
     pub bias_settle_time: Option<f64>,
@@ -44,13 +38,14 @@ impl MonitorOptions {
         Self {
             dt,
             observer_gain: vec![50.0],
-            isolation: IsolatorOptions { torque_threshold: vec![0.5], ..IsolatorOptions::default() },
+            isolation: IsolatorOptions {
+                torque_threshold: vec![0.5],
+                wrench_threshold: vec![2.0],
+                ..IsolatorOptions::default()
+            },
             hold_time: 0.02,
             bias_time_constant: None,
             bias_settle_time: None,
-            sensors: vec![],
-            wanted_contacts: vec![],
-            wrench_threshold: vec![2.0],
         }
     }
 }
@@ -112,20 +107,21 @@ impl ContactMonitor {
             )));
         }
         let observer = MomentumObserver::new(robot.clone(), options.dt, &options.observer_gain)?;
-        let tree = SensorTree::new(&robot, &options.sensors)?;
+        let tree = SensorTree::new(&robot, &options.isolation.sensors)?;
         let threshold = &options.isolation.torque_threshold;
         let detector = Detector::with_sensors(
             robot.clone(),
             threshold,
             &tree,
-            &options.wrench_threshold,
+            &options.isolation.wrench_threshold,
             options.hold_time,
         )?;
-        let sensing = Sensing::new(&robot, tree, &options.wanted_contacts, observer.gain(), options.dt)?;
+        let sensing =
+            Sensing::new(&robot, tree, &options.isolation.wanted_contacts, observer.gain(), options.dt)?;
         Ok(Self {
             observer,
             detector,
-            sensing: (!options.sensors.is_empty()).then_some(sensing),
+            sensing: (!options.isolation.sensors.is_empty()).then_some(sensing),
             bias: options.bias_time_constant.map(|constant| BiasTracker::new(nv, constant)).transpose()?,
             release: ReleaseDetector::new(nv, options.bias_settle_time),
             isolator: ContactIsolator::new(robot.clone(), &options.isolation)?,
@@ -173,9 +169,18 @@ impl ContactMonitor {
         Ok(())
     }
 
-    /// The contacts behind the collision torque.
+    /// The contacts behind the torque and the wrenches.
     fn isolate(&mut self) {
-        self.isolator.isolate_at(self.observer.kinematics(), &self.collision_torque);
+        let kinematics = self.observer.kinematics();
+        match &self.sensing {
+            Some(sensing) => {
+                let (wrenches, lag) = (sensing.trusted(), Some(sensing.wrenches()));
+                self.isolator.isolate_at(kinematics, &self.external_torque, wrenches, lag);
+            }
+            None => {
+                self.isolator.isolate_at(kinematics, &self.external_torque, &[], None);
+            }
+        }
     }
 
     fn check_wrenches(&self, wrenches: Option<&[[f64; 6]]>) -> Result<()> {

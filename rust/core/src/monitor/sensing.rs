@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{Vector3, Vector6};
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::observer::MomentumObserver;
 use crate::robot::motion::{split, stack};
 use crate::robot::{Kinematics, Robot};
@@ -30,6 +30,7 @@ pub(super) struct Sensing {
     blind: Vec<bool>,
     /// Of each sensor: its external wrench without wanted contacts.
     unwanted: Vec<Vector6<f64>>,
+    trusted: Vec<Vector6<f64>>,
 }
 
 impl Sensing {
@@ -41,20 +42,7 @@ impl Sensing {
         gain: &[f64],
         dt: f64,
     ) -> Result<Self> {
-        let mut is_wanted = vec![false; tree.len()];
-        for name in wanted {
-            let Some(sensor) = tree.find(name) else {
-                return Err(Error::Input(format!(
-                    "wanted_contacts: there is no sensor '{name}'; the sensors are {}",
-                    tree.names().join(", ")
-                )));
-            };
-            is_wanted[sensor] = true;
-        }
-        // What is behind a wanted contact's sensor is meant, too.
-        let is_wanted: Vec<bool> = (0..tree.len())
-            .map(|sensor| (0..tree.len()).any(|other| is_wanted[other] && tree.is_behind(sensor, other)))
-            .collect();
+        let is_wanted = tree.wanted(wanted)?;
         let mut behind_wanted = vec![false; gain.len()];
         for body in 1..robot.body_count() {
             let at_joint = |sensor: usize| {
@@ -75,17 +63,22 @@ impl Sensing {
             blind: behind_wanted.clone(),
             behind_wanted,
             unwanted: vec![Vector6::zeros(); tree.len()],
+            trusted: vec![Vector6::zeros(); tree.len()],
             wanted: is_wanted,
             tree,
         })
     }
 
-    /// A tick of `dt`, after the momentum observer's, with checked readings.
+    /// A tick of `dt`, after the observer's, with checked readings.
     pub fn update(&mut self, observer: &MomentumObserver, readings: &[[f64; 6]], dt: f64) {
         self.wrenches.update(observer.kinematics(), &self.tree, readings);
         self.tree.set_active(self.wrenches.usable());
         self.find_blind(observer.robot(), dt);
         self.exclude(observer.kinematics());
+        for (sensor, trusted) in self.trusted.iter_mut().enumerate() {
+            let settled = self.unsettled[sensor] <= 0.0;
+            *trusted = if settled { self.wrenches.external()[sensor] } else { Vector6::repeat(f64::NAN) };
+        }
     }
 
     /// As [`crate::sensor::LoadCompensator::check_readings`].
@@ -118,10 +111,14 @@ impl Sensing {
         &self.tree
     }
 
-    /// Which sensors' contacts are wanted.
-    #[allow(dead_code)] // of use to isolation
-    pub fn wanted(&self) -> &[bool] {
-        &self.wanted
+    /// External wrenches of all sensors, NaN where one is left out, or is wanted and not settled.
+    pub fn trusted(&self) -> &[Vector6<f64>] {
+        &self.trusted
+    }
+
+    /// The observer of the sensors' wrenches, which knows their torques, too.
+    pub fn wrenches(&self) -> &WrenchObserver {
+        &self.wrenches
     }
 
     /// Forgets all ticks.
@@ -132,6 +129,7 @@ impl Sensing {
         self.wanted_torque.fill(0.0);
         self.blind.copy_from_slice(&self.behind_wanted);
         self.unwanted.fill(Vector6::zeros());
+        self.trusted.fill(Vector6::zeros());
     }
 
     /// Joints that a wanted contact may load unmeasured: on the chain of a wanted sensor without a settled reading,

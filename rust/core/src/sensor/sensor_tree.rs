@@ -154,6 +154,25 @@ impl SensorTree {
         std::iter::successors(Some(sensor), |sensor| self.fixed_parent(*sensor)).any(|sensor| sensor == other)
     }
 
+    /// Which sensors' contacts are meant, by their names: what is behind such a sensor is meant, too.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a name that no sensor has.
+    pub(crate) fn wanted(&self, names: &[String]) -> Result<Vec<bool>> {
+        let mut named = vec![false; self.len()];
+        for name in names {
+            let Some(sensor) = self.find(name) else {
+                return Err(Error::Input(format!(
+                    "wanted_contacts: there is no sensor '{name}'; the sensors are {}",
+                    self.names.join(", ")
+                )));
+            };
+            named[sensor] = true;
+        }
+        let wanted = |sensor| (0..self.len()).any(|other| named[other] && self.is_behind(sensor, other));
+        Ok((0..self.len()).map(wanted).collect())
+    }
+
     /// The sensors, each after all behind it.
     pub fn distal_first(&self) -> &[usize] {
         &self.distal_first

@@ -1,0 +1,200 @@
+//! Contacts that force/torque sensors see (Vorndamme 2017, IV-B and eq. 27).
+
+use nalgebra::{Vector3, Vector6};
+
+use super::isolator::{ContactIsolator, CONTRADICTION};
+use super::line::best_first;
+use super::result::{Candidate, Contact};
+use super::rows::{Root, TORQUE_SHARE};
+use super::several::{Found, Scene};
+use super::wrench::{jacobian_column, WrenchEstimate};
+use crate::robot::motion::{split, stack};
+use crate::robot::Kinematics;
+use crate::sensor::{is_known, sensor_torque, WrenchObserver};
+
+/// A wrench that is a difference of measured ones is none if it is less than this share of them: five standard
+/// deviations of sensors that err by a hundredth.
+const LEFT_OVER: f64 = 0.05;
+/// Moment along the force that rounding leaves [tolerances].
+const EXACT: f64 = 1e-6;
+
+impl ContactIsolator {
+    /// Which sensors are in use, and what each joint feels of contacts in its own region: its torque less what the
+    /// sensors behind it see (eq. 20). `lagged` are the sensors' torques as an observer knows them.
+    pub(super) fn divide(
+        &mut self,
+        kinematics: &Kinematics,
+        torque: &[f64],
+        wrenches: &[Vector6<f64>],
+        lagged: Option<&WrenchObserver>,
+    ) {
+        self.residual.copy_from_slice(torque);
+        self.measured.fill(0.0);
+        let Self { robot, regions, residual, measured, active, sensed, .. } = self;
+        active.clear();
+        active.extend(wrenches.iter().map(is_known));
+        regions.set_active(robot, active);
+        for (sensor, wrench) in wrenches.iter().enumerate().filter(|(sensor, _)| active[*sensor]) {
+            let explained = match lagged {
+                Some(lagged) => lagged.lagged_torque(sensor),
+                None => {
+                    sensor_torque(robot, kinematics, &regions.tree, sensor, wrench, sensed);
+                    &*sensed
+                }
+            };
+            let region =
+                regions.tree.parent(sensor).map_or(&regions.base, |carrier| &regions.behind[carrier]);
+            let position = regions.tree.position(kinematics, sensor);
+            for joint in region.chain(robot, regions.tree.body(sensor)) {
+                for (column, k) in robot.velocity_range(joint).enumerate() {
+                    residual[k] -= explained[k];
+                    // Components err one by one, also where their sum is small.
+                    let axis = jacobian_column(robot, kinematics, joint, column, &position);
+                    measured[k] += axis.component_mul(wrench).norm_squared();
+                }
+            }
+        }
+        for (measured, torque) in measured.iter_mut().zip(torque).filter(|(measured, _)| **measured > 0.0) {
+            *measured = (*measured + torque * torque).sqrt();
+        }
+    }
+
+    /// The contacts that load a sensor directly, not by way of the next sensor behind it.
+    pub(super) fn isolate_behind_sensor(
+        &mut self,
+        kinematics: &Kinematics,
+        sensor: usize,
+        wrenches: &[Vector6<f64>],
+    ) {
+        let regions = &self.regions;
+        if !self.active[sensor] || regions.wanted[sensor] || regions.behind[sensor].unknown {
+            return;
+        }
+        let (root, spread) = self.left_over(kinematics, sensor, wrenches);
+        let limits = self.wrench_threshold[sensor];
+        let over = |share: f64| (0..6).any(|i| root.value[i].abs() > limits[i].max(share * spread[i]));
+        if !over(0.0) {
+            return;
+        }
+        let certain = over(LEFT_OVER);
+        std::mem::swap(&mut self.region, &mut self.regions.behind[sensor]);
+        let first = self.isolation.contacts.len();
+        self.locate(kinematics, &root, &limits, certain);
+        self.isolation.contacts[first..].iter_mut().for_each(|contact| contact.source = Some(sensor));
+        std::mem::swap(&mut self.region, &mut self.regions.behind[sensor]);
+    }
+
+    /// A sensor's wrench less those of the next sensors behind it (eq. 27), and how large the parts are.
+    fn left_over(
+        &self,
+        kinematics: &Kinematics,
+        sensor: usize,
+        wrenches: &[Vector6<f64>],
+    ) -> (Root, Vector6<f64>) {
+        let tree = &self.regions.tree;
+        let position = tree.position(kinematics, sensor);
+        let mut value = wrenches[sensor];
+        let mut squares = value.component_mul(&value);
+        for other in
+            (0..tree.len()).filter(|other| self.active[*other] && tree.parent(*other) == Some(sensor))
+        {
+            let (force, moment) = split(&wrenches[other]);
+            let arm = tree.position(kinematics, other) - position;
+            value -= stack(&force, &(moment + arm.cross(&force)));
+            let size = |vector: &Vector3<f64>| vector.component_mul(vector);
+            let (arms, forces) = (size(&arm), size(&force));
+            let turned = Vector3::new(
+                arms.y * forces.z + arms.z * forces.y,
+                arms.z * forces.x + arms.x * forces.z,
+                arms.x * forces.y + arms.y * forces.x,
+            );
+            squares += stack(&forces, &(size(&moment) + turned));
+        }
+        let spread = squares.map(f64::sqrt);
+        let limits = &self.wrench_threshold[sensor];
+        let axes = std::array::from_fn(|i| {
+            let axis = Vector3::ith(i % 3, 1.0);
+            if i < 3 {
+                stack(&axis, &Vector3::zeros())
+            } else {
+                stack(&position.cross(&axis), &axis)
+            }
+        });
+        let tolerance = std::array::from_fn(|i| limits[i].hypot(TORQUE_SHARE * spread[i]));
+        (Root { axes, value: std::array::from_fn(|i| value[i]), tolerance }, spread)
+    }
+
+    /// One force that explains the wrench, or several that explain it and the joints' torques; `certain`: the wrench
+    /// is more than an error of the sensors.
+    fn locate(&mut self, kinematics: &Kinematics, root: &Root, limits: &Vector6<f64>, certain: bool) {
+        let wrench = root.estimate();
+        let moment = wrench.moment_along().abs();
+        if moment > EXACT && !certain {
+            return;
+        }
+        let robot = &self.robot;
+        let felt = |k: usize| self.residual[k].abs() > self.threshold[k].max(LEFT_OVER * self.measured[k]);
+        let tip = match self.tips.find(robot, |k| self.region.feels[k] && felt(k)) {
+            [tip] => Some(*tip),
+            _ => None,
+        };
+        if moment > EXACT {
+            let one_does = moment <= CONTRADICTION;
+            if self.solve_several(kinematics, root, one_does) {
+                return self.report_several(kinematics);
+            }
+        }
+        if moment <= CONTRADICTION {
+            if let Some(hit) = self.hit_in_region(kinematics, tip, &wrench) {
+                // What contradicts the thresholds is not located.
+                let strict = Root { tolerance: std::array::from_fn(|i| limits[i]), ..*root };
+                let determined = moment <= EXACT || strict.estimate().moment_along().abs() <= CONTRADICTION;
+                self.report_found(kinematics, &Found::new(wrench, hit), determined);
+                return;
+            }
+        }
+        // The wrench is known, the point is not.
+        let body = tip.filter(|tip| self.region.links_of(&self.robot, *tip).next().is_some());
+        let named = (1..self.robot.body_count()).filter(|other| body.is_none_or(|body| *other == body));
+        let link = named.flat_map(|body| self.region.links_of(&self.robot, body)).next();
+        if let Some(link) = link.filter(|_| self.isolation.contacts.len() < self.max_contacts) {
+            let mut contact = Contact::unlocated(link);
+            let end = self.isolation.candidates.len();
+            contact.candidates = end..end;
+            self.isolation.contacts.push(contact);
+            self.isolation.link_candidates.push(link);
+            self.report_wrench(kinematics, &wrench);
+        }
+    }
+
+    /// The first place along the force where it enters a link of the region: one that the joints allow, or any.
+    /// Leaves all hits of these links at the end of the candidates.
+    fn hit_in_region(
+        &mut self,
+        kinematics: &Kinematics,
+        tip: Option<usize>,
+        wrench: &WrenchEstimate,
+    ) -> Option<Candidate> {
+        let (start, direction) = wrench.line_of_action()?;
+        let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
+        let end = self.isolation.candidates.len();
+        for allowed in [true, false] {
+            match tip.filter(|_| allowed) {
+                Some(tip) => self.bodies.grow(scene, tip, wrench, &self.residual, &self.threshold),
+                None => self.bodies.set_all(true),
+            }
+            self.isolation.candidates.truncate(end);
+            for link in self.bodies.links(&self.robot, &self.region) {
+                let hits = &mut self.isolation.candidates;
+                self.line.cast(&self.robot, kinematics, link, &start, &direction, hits);
+            }
+            best_first(&mut self.isolation.candidates[end..]);
+            let best = self.isolation.candidates.get(end).copied().filter(|hit| hit.pushing);
+            if best.is_some() {
+                return best;
+            }
+        }
+        self.isolation.candidates.truncate(end);
+        None
+    }
+}
