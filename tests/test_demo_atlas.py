@@ -14,7 +14,7 @@ pytest.importorskip("mujoco", reason="the demo needs MuJoCo: pip install contact
 from contactsense import InputError, Robot, demo
 from contactsense.cli.app import run as run_command
 from contactsense.demo.atlas.plan import DURATION_RANGE, END, FORCE_RANGE, PLACES, plan_pushes
-from contactsense.demo.atlas.settings import SENSORS, SensorNoise, choose
+from contactsense.demo.atlas.settings import BEHIND, SENSORS, SensorNoise, choose
 from contactsense.demo.atlas.standing import FEET, posture
 from contactsense.demo.settings import noise_passed
 from contactsense.sim import named_model
@@ -117,14 +117,30 @@ def test_thresholds_follow_the_noise() -> None:
     torque[3] = 100.0
     exact = choose(robot, q, torque, demo.Noise(), SensorNoise(), 1e-3)
     np.testing.assert_array_equal(exact.torque_threshold, [3.0] * 6 + [1.0] * 30)
-    np.testing.assert_array_equal(exact.wrench_threshold, [3.0] * 6)
+    np.testing.assert_array_equal(exact.wrench_threshold, [[3.0] * 3 + [0.5] * 3] * 9)
     noisy = choose(robot, q, torque, demo.Noise(2.0, 1.0), SensorNoise(4.0, 0.5), 1e-3)
     assert noisy.observer_gain < exact.observer_gain
     scale = 6.0 * noise_passed(noisy.observer_gain, 1e-3)
-    np.testing.assert_allclose(noisy.wrench_threshold, np.maximum(3.0, scale * np.repeat([4.0, 0.5], 3)))
+    names = [sensor.name for sensor in SENSORS]
+    alone = scale * np.repeat([4.0, 0.5], 3)
+    np.testing.assert_allclose(noisy.wrench_threshold[names.index("l_hand")], alone)
+    # The next sensors' errors add to a sensor's own, those of their forces by their arms.
+    chest = noisy.wrench_threshold[names.index("utorso")]
+    np.testing.assert_allclose(chest[:3], scale * np.sqrt(3.0) * 4.0)
+    assert (chest[3:] > np.sqrt(3.0) * alone[3:]).all()
     assert noisy.torque_threshold[6 + 3] == pytest.approx(scale * np.hypot(2.0, 1.0))
     # Both feet's forces err along each of the base's axes.
     np.testing.assert_allclose(noisy.torque_threshold[:3], scale * np.sqrt(2.0) * 4.0, rtol=1e-6)
+
+
+def test_sensors_behind_sensors_are_as_the_model_has_it() -> None:
+    model = named_model("atlas")
+    joint = {sensor.name: model.frames[model.getFrameId(sensor.link)].parentJoint for sensor in SENSORS}
+    for name in joint:
+        chain = [int(index) for index in model.supports[joint[name]]][:-1]
+        carriers = [other for other in joint if joint[other] in chain]
+        nearest = max(carriers, key=lambda other: chain.index(joint[other]), default=None)
+        assert [other for other, behind in BEHIND.items() if name in behind] == ([nearest] if nearest else [])
 
 
 def test_wanted_contacts_are_sensors() -> None:
@@ -156,7 +172,7 @@ def test_json_and_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert len(data["torque_threshold"]) == 36
     assert data["standing"]["kept"]
     assert data["standing"]["wanted_contacts"] == ["l_foot", "r_foot"]
-    assert len(data["standing"]["wrench_threshold"]) == 6
+    assert np.shape(data["standing"]["wrench_threshold"]) == (9, 6)
     assert len(data["hits"]) == data["summary"]["detected"] == 5
     assert data["monitor"]["calls"] == round(1000 * END)
 

@@ -181,9 +181,7 @@ class ContactIsolator:
         max_contacts: int | None = None,
         pushing: bool = True,
     ) -> Self: ...
-    def isolate(
-        self, q: ArrayLike, tau_ext: ArrayLike, wrenches: ArrayLike | None = None
-    ) -> Isolation: ...
+    def isolate(self, q: ArrayLike, tau_ext: ArrayLike, wrenches: ArrayLike | None = None) -> Isolation: ...
 
 @final
 class Isolation:

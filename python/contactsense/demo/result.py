@@ -67,7 +67,7 @@ class Standing:
     moved: float  # largest way of the base [m]
     turned: float  # largest angle of the base [rad]
     sensor_noise: tuple[float, float]  # standard deviations [N], [Nm]
-    wrench_threshold: FloatArray  # (6,) [N], [Nm]
+    wrench_threshold: FloatArray  # (sensors, 6) [N], [Nm]
 
     @property
     def kept(self) -> bool:

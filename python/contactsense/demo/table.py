@@ -106,7 +106,7 @@ def _standing_settings_text(settings: Settings, standing: Standing) -> str:
     return (
         f"Observer gain {settings.observer_gain:.0f}/s; thresholds: base {torque[:3].max():.1f} N and "
         f"{torque[3:6].max():.1f} Nm, joints {torque[6:].min():.1f} to {torque[6:].max():.1f} Nm, "
-        f"force/torque sensors {wrench[:3].max():.1f} N and {wrench[3:].max():.1f} Nm: the larger of a floor "
+        f"sensors {wrench[:, :3].max():.1f} N and {wrench[:, 3:].max():.1f} Nm: the larger of a floor "
         f"and {DEVIATIONS:g} standard deviations at the stated noise. Wanted contacts: "
         f"{', '.join(standing.feet)}"
     )

@@ -20,9 +20,17 @@ SENSORS = tuple(
         *("l_clav", "r_clav", "l_uglut", "r_uglut", "utorso"),
     )
 )
+# The next sensors behind a sensor, whose wrenches are taken out of its own.
+BEHIND = {
+    "l_clav": ("l_hand",),
+    "r_clav": ("r_hand",),
+    "l_uglut": ("l_foot",),
+    "r_uglut": ("r_foot",),
+    "utorso": ("l_clav", "r_clav"),
+}
 # What fast pushes and the edges of feet that come and go within a tick leave, without noise: of forces [N],
-# of moments at the base and at sensors [Nm], and of joints [Nm].
-FORCE_FLOOR, MOMENT_FLOOR, JOINT_FLOOR = 3.0, 3.0, 1.0
+# and of moments [Nm] at the base, of joints, and at sensors.
+FORCE_FLOOR, MOMENT_FLOOR, JOINT_FLOOR, SENSOR_FLOOR = 3.0, 3.0, 1.0, 0.5
 # The ground answers a push at the chest by moments in each leg with this lever [m].
 _LEG_LEVER = 0.65
 
@@ -55,7 +63,7 @@ class StandingSettings:
 
     observer_gain: float  # [1/s]
     torque_threshold: FloatArray  # (nv,) [N, Nm]
-    wrench_threshold: FloatArray  # (6,) [N, Nm]
+    wrench_threshold: FloatArray  # (sensors, 6) [N, Nm]
 
 
 def choose(
@@ -89,8 +97,22 @@ def choose(
     return StandingSettings(
         gain,
         np.maximum(floor, scale * np.sqrt(variance)),
-        np.maximum(floor[:6], scale * sensor_noise.deviation),
+        np.maximum(
+            np.repeat([FORCE_FLOOR, SENSOR_FLOOR], 3),
+            scale * np.sqrt(_wrench_variance(robot, q, sensor_noise)),
+        ),
     )
+
+
+def _wrench_variance(robot: Robot, q: FloatArray, noise: SensorNoise) -> FloatArray:
+    """(sensors, 6) of a wrench less those of the next sensors behind, moved to the sensor's origin."""
+    force, moment = noise.newtons**2, noise.newton_metres**2
+    variance = np.tile(noise.deviation**2, (len(SENSORS), 1))
+    for row, sensor in zip(variance, SENSORS, strict=True):
+        for other in BEHIND.get(sensor.name, ()):
+            arm = robot.link_pose(q, other)[:3, 3] - robot.link_pose(q, sensor.link)[:3, 3]
+            row += np.concatenate([np.full(3, force), moment + force * (arm @ arm - arm**2)])
+    return variance
 
 
 def _push_torque(feet: FloatArray) -> FloatArray:
