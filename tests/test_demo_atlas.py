@@ -42,6 +42,9 @@ def test_every_push_is_felt_named_and_located(seed: int) -> None:
         assert hit.located
         assert hit.point_error < 0.02
         assert hit.force_error < 0.1
+        # Early and late ticks may name a neighbour; never a hand or the chest, whose sensors say otherwise.
+        assert not {"l_hand", "r_hand", "utorso"} & set(hit.elsewhere)
+        assert sum(hit.elsewhere.values()) < 20
     assert run.false_alarms == 0
 
 
@@ -75,11 +78,12 @@ def test_with_noise(seed: int) -> None:
     assert run.detected == len(run.hits)
     assert run.false_alarms == 0
     assert max(hit.delay for hit in run.hits) < 0.025
-    assert run.links_right >= 4
-    located = [hit for hit in run.located if hit.link_right]
-    assert len(located) >= 3
-    assert np.median([hit.point_error for hit in located]) < 0.02
-    assert all(hit.point_error < 5 * hit.point_std for hit in located)
+    # Over 20 seeds: delay up to 9.3 ms, all links right, 94 of 100 located, within 13 mm and 2.7 %.
+    assert run.links_right == len(run.hits)
+    assert len(run.located) >= 3
+    assert max(hit.point_error for hit in run.located) < 0.03
+    assert all(hit.point_error < 5 * hit.point_std for hit in run.located)
+    assert max(hit.force_error for hit in run.located) < 0.1
 
 
 def test_the_truth_is_the_push_on_the_surface() -> None:
@@ -115,7 +119,7 @@ def test_thresholds_follow_the_noise() -> None:
     q = posture(model, 1)
     torque = np.zeros(30)
     torque[3] = 100.0
-    exact = choose(robot, q, torque, demo.Noise(), SensorNoise(), 1e-3)
+    exact = choose(robot, q, torque, demo.Noise(), SensorNoise(0, 0), 1e-3)
     np.testing.assert_array_equal(exact.torque_threshold, [3.0] * 6 + [1.0] * 30)
     np.testing.assert_array_equal(exact.wrench_threshold, [[3.0] * 3 + [0.5] * 3] * 9)
     noisy = choose(robot, q, torque, demo.Noise(2.0, 1.0), SensorNoise(4.0, 0.5), 1e-3)

@@ -39,7 +39,7 @@ class HitResult:
     true_force: FloatArray  # (3,) at its peak, direction as then [N]
     point: FloatArray | None  # (3,) estimated [m]
     estimated_force: FloatArray | None  # (3,) [N]
-    elsewhere: int  # ticks of the hit on which a contact was named on another link
+    elsewhere: dict[str, int]  # other links that were named meanwhile, and on how many ticks
 
     @property
     def link_right(self) -> bool:

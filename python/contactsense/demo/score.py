@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 import numpy as np
 
 from .. import Contact, ContactReport, Robot
@@ -28,7 +30,7 @@ class HitScorer:
         self, robot: Robot, push: Push, number: int, threshold: FloatArray, idle_q: FloatArray
     ) -> None:
         self._robot, self._push, self._number, self._threshold = robot, push, number, threshold
-        self._elsewhere = 0
+        self._elsewhere: Counter[str] = Counter()
         self._delay: float | None = None
         self._strength = 0.0
         self._time: float | None = None
@@ -50,7 +52,8 @@ class HitScorer:
             return
         if self._delay is None:
             self._delay = time - self._push.start
-        self._elsewhere += any(contact.link != self._push.link for contact in report.contacts)
+        named = {contact.link for contact in report.contacts}
+        self._elsewhere.update(named - {self._push.link})
         strength = float(np.linalg.norm(report.collision_torque / self._threshold))
         # Detection holds for some time after the last signal; isolation answers only to a present one.
         if report.contacts and strength > self._strength:
@@ -87,5 +90,5 @@ class HitScorer:
             true_force=true_force,
             point=point,
             estimated_force=force,
-            elsewhere=self._elsewhere,
+            elsewhere=dict(self._elsewhere),
         )

@@ -54,7 +54,7 @@ class SensorNoise:
     @property
     def deviation(self) -> FloatArray:
         """(6,) [N, Nm]"""
-        return np.repeat([self.newtons, self.newton_metres], 3)
+        return np.repeat(np.array([self.newtons, self.newton_metres], dtype=np.float64), 3)
 
 
 @dataclass(frozen=True)
