@@ -113,7 +113,7 @@ def test_an_external_moment_is_not_taken_for_a_point() -> None:
 
 
 @pytest.mark.parametrize("name", ["iiwa14", "atlas"])
-def test_torques_that_contradict_one_force_locate_nothing(name: str) -> None:
+def test_torques_that_contradict_one_force_locate_nothing_elsewhere(name: str) -> None:
     """A twist beside the push, or a second push on the same branch, ten and more thresholds strong."""
     robot = cs.Robot.named(name)
     isolator = cs.ContactIsolator(robot)
@@ -126,10 +126,12 @@ def test_torques_that_contradict_one_force_locate_nothing(name: str) -> None:
         twist = robot.jacobian(touch.q, first, touch.point)[3:].T @ (0.03 * touch.force)
         pose = robot.link_pose(touch.q, second)
         local = robot.link_pose(beside.q, second)
-        point = pose[:3, :3] @ local[:3, :3].T @ (beside.point - local[:3, 3]) + pose[:3, 3]
-        for tau in (push + twist, push + torque(robot, touch.q, second, point, beside.force)):
+        turn = pose[:3, :3] @ local[:3, :3].T
+        point = turn @ (beside.point - local[:3, 3]) + pose[:3, 3]
+        both = push + torque(robot, touch.q, second, point, turn @ beside.force)
+        for tau, true in ((push + twist, [touch.point]), (both, [touch.point, point])):
             for contact in isolator.isolate(touch.q, tau).contacts:
-                off = np.linalg.norm(contact.point - touch.point)
+                off = np.linalg.norm(contact.point - true, axis=1).min()
                 far += contact.located and off > 0.01 and off > 3 * contact.point_std
     assert far <= 2  # of 200
 
@@ -143,7 +145,6 @@ def test_two_branches_are_both_named() -> None:
         tau += torque(robot, q, link, point, np.array([10.0, -20.0, 15.0]))
     isolation = cs.ContactIsolator(robot).isolate(q, tau)
     assert {contact.link for contact in isolation.contacts} == {"l_hand", "r_foot"}
-    assert not any(contact.located for contact in isolation.contacts)
     assert len(cs.ContactIsolator(robot, max_contacts=1).isolate(q, tau).contacts) == 1
 
 

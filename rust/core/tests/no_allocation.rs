@@ -51,7 +51,7 @@ fn allocations(mut work: impl FnMut()) -> usize {
         .expect("three runs")
 }
 
-/// External torques of touches on every link, and of two links at once.
+/// External torques of touches on every link, and of several at once.
 fn touches(robot: &Robot, q: &[f64]) -> Vec<Vec<f64>> {
     let mut torques = vec![];
     for &link in robot.touchable_links() {
@@ -63,8 +63,20 @@ fn touches(robot: &Robot, q: &[f64]) -> Vec<Vec<f64>> {
             torques.push(common::torque_of(robot, q, link, point.into(), force));
         }
     }
-    let both = torques[0].iter().zip(&torques[torques.len() - 1]).map(|(a, b)| a + b).collect();
-    torques.push(both);
+    // Two, three and four at once, exact and not.
+    let count = torques.len();
+    for apart in 1..count {
+        for parts in 2..5 {
+            let mut sum = vec![0.0; robot.nv()];
+            for part in 0..parts {
+                let other = &torques[(part * apart) % count];
+                sum.iter_mut().zip(other).for_each(|(sum, torque)| *sum += torque);
+            }
+            let noisy =
+                sum.iter().enumerate().map(|(k, torque)| torque * (1.0 + 0.02 * (7.0 * k as f64).sin()));
+            torques.extend([noisy.collect(), sum]);
+        }
+    }
     torques
 }
 

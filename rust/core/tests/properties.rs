@@ -3,6 +3,8 @@
 use contactsense::isolation::{ContactIsolator, IsolatorOptions};
 use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
 use contactsense::observer::MomentumObserver;
+use contactsense::sensor::{Convention, ForceTorqueSensor};
+use contactsense::spatial::Pose;
 use contactsense::Error;
 use proptest::prelude::*;
 
@@ -100,6 +102,46 @@ proptest! {
                     prop_assert!(!good && matches!(error, Error::Input(_)), "{error}");
                     monitor.report_into(&mut report);
                     // Debug text, because an open point is NaN and NaN differs from itself.
+                    prop_assert_eq!(format!("{:?}", &report), format!("{:?}", &before));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_monitor_with_sensors_refuses_or_answers(
+        ticks in proptest::collection::vec((vector(7), vector(7), vector(12)), 1..20)
+    ) {
+        let robot = common::arm();
+        let q = common::configuration(&robot, 0.2);
+        let sensor = |name: &str| ForceTorqueSensor {
+            name: name.into(),
+            link: name.into(),
+            pose: Pose::identity(),
+            convention: Convention::Support,
+        };
+        let mut options = options();
+        options.isolation.sensors = vec![sensor("arm_2"), sensor("arm_5")];
+        options.isolation.wanted_contacts = vec!["arm_5".into()];
+        let mut monitor = ContactMonitor::new(robot.clone(), &options).unwrap();
+        let mut report = ContactReport::default();
+        for (v, tau, readings) in ticks {
+            monitor.report_into(&mut report);
+            let before = report.clone();
+            let fits = |x: &f64| x.is_nan() || x.abs() < 1e60;
+            let rows = readings.as_chunks::<6>().0;
+            let good = sensible(&v, 7) && sensible(&tau, 7) && rows.len() == 2 && rows.as_flattened().iter().all(fits);
+            match monitor.update(&q, &v, &tau, None, Some(rows)) {
+                Ok(()) => {
+                    prop_assert!(good);
+                    monitor.report_into(&mut report);
+                    let silent = rows.iter().enumerate().filter(|(_, row)| row.iter().any(|x| x.is_nan()));
+                    prop_assert_eq!(&report.sensors_left_out, &silent.map(|(k, _)| k).collect::<Vec<_>>());
+                    prop_assert!(report.collision_torque.iter().all(|x| x.is_finite()));
+                }
+                Err(error) => {
+                    prop_assert!(!good && matches!(error, Error::Input(_)), "{error}");
+                    monitor.report_into(&mut report);
                     prop_assert_eq!(format!("{:?}", &report), format!("{:?}", &before));
                 }
             }

@@ -226,25 +226,26 @@ impl ContactIsolator {
         if let Some(tip) = single(self).filter(|tip| self.is_single(kinematics, *tip)) {
             return self.isolate_single(kinematics, tip);
         }
-        self.set_rows(kinematics, None);
+        self.set_rows(kinematics, None, true);
         let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
         let exact = self.several.solve_exactly(scene, &mut self.rows);
         if exact && self.several.verified {
-            return self.identify_and_report(kinematics);
+            self.identify(kinematics, None);
+            return self.report_several(kinematics);
         }
         // Beside strong contacts that sensors see, a weak torque may be their error.
         if self.find_tips(LEFT_OVER) == 0 {
             return;
         }
-        self.set_rows(kinematics, None);
+        self.set_rows(kinematics, None, true);
         match single(self) {
             Some(tip) if self.estimate(kinematics, tip).rank < 6 || self.roughly(tip) => {
                 self.isolate_single(kinematics, tip);
             }
             tip => {
-                let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
-                if exact || self.several.solve_roughly(scene, &self.rows, self.tips.tips()) {
-                    self.identify_and_report(kinematics);
+                if exact || self.solve_roughly(kinematics, None) {
+                    self.identify(kinematics, None);
+                    self.report_several(kinematics);
                 } else if let Some(tip) = tip {
                     self.isolate_single(kinematics, tip);
                 } else {
@@ -262,9 +263,19 @@ impl ContactIsolator {
         tips.find(robot, |k| region.feels[k] && over(k)).len()
     }
 
-    fn set_rows(&mut self, kinematics: &Kinematics, root: Option<&Root>) {
-        self.rows.set(&self.robot, kinematics, &self.residual, &self.measured, &self.threshold);
-        self.rows.root = root.copied();
+    fn set_rows(&mut self, kinematics: &Kinematics, root: Option<&Root>, widened: bool) {
+        self.rows.set(&self.robot, kinematics, &self.residual, &self.measured, &self.threshold, widened);
+        self.rows.root = root.map(|root| if widened { *root } else { root.narrow() });
+    }
+
+    /// Several forces that explain the torques within the thresholds, or else within wider tolerances; `tips` are
+    /// found.
+    fn solve_roughly(&mut self, kinematics: &Kinematics, root: Option<&Root>) -> bool {
+        [false, true].into_iter().any(|widened| {
+            self.set_rows(kinematics, root, widened);
+            let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
+            self.several.solve_roughly(scene, &self.rows, self.tips.tips(), widened)
+        })
     }
 
     /// Whether one force explains the torques within their tolerances.
@@ -279,27 +290,24 @@ impl ContactIsolator {
     /// Several forces that explain a sensor's wrench and the torques behind it; where one force does, only if they fit
     /// but for rounding.
     pub(super) fn solve_several(&mut self, kinematics: &Kinematics, root: &Root, one_does: bool) -> bool {
-        self.set_rows(kinematics, Some(root));
+        self.set_rows(kinematics, Some(root), true);
         let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
         let exact = self.several.solve_exactly(scene, &mut self.rows);
         if one_does && !(exact && self.several.verified) {
             return false;
         }
         self.find_tips(LEFT_OVER);
-        self.set_rows(kinematics, Some(root));
-        let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
-        let solved = exact || self.several.solve_roughly(scene, &self.rows, self.tips.tips());
+        let solved = exact || self.solve_roughly(kinematics, Some(root));
         if solved {
-            self.several.identify(scene, &self.rows);
+            self.identify(kinematics, Some(root));
         }
         solved
     }
 
-    fn identify_and_report(&mut self, kinematics: &Kinematics) {
-        self.set_rows(kinematics, None);
+    fn identify(&mut self, kinematics: &Kinematics, root: Option<&Root>) {
+        self.set_rows(kinematics, root, true);
         let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
         self.several.identify(scene, &self.rows);
-        self.report_several(kinematics);
     }
 }
 

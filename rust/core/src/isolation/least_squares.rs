@@ -66,8 +66,7 @@ impl LeastSquares {
                 .fold((k, -1.0), |best, other| if other.1 > best.1 { other } else { best });
             let size = size.sqrt();
             largest = largest.max(size);
-            // Also where the size is not a number.
-            if !(size > tolerance * largest) {
+            if size.is_nan() || size <= tolerance * largest {
                 break;
             }
             if best != k {

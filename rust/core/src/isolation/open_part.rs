@@ -105,8 +105,8 @@ pub(super) fn close_near(pair: &PairEstimate, mut open: Open) -> Option<Open> {
             return Some(open);
         }
         let mut gradients = [[0.0; 6]; 2];
-        for i in 0..pair.deficit {
-            let column = pair.basis.column(i).into_owned();
+        for (i, column) in pair.basis.column_iter().enumerate().take(pair.deficit) {
+            let column = column.into_owned();
             gradients[0][i] = -moment_form(&first, &column) - moment_form(&column, &first);
             gradients[1][i] = moment_form(&second, &column) + moment_form(&column, &second);
         }

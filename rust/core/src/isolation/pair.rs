@@ -128,6 +128,11 @@ impl PairEstimate {
         [self.total - second, second]
     }
 
+    /// Root mean square of what no two wrenches explain, in tolerances.
+    pub fn unexplained_share(&self) -> f64 {
+        (self.unexplained / self.redundant.max(1) as f64).sqrt()
+    }
+
     /// How many conditions the two forces were not fitted to.
     pub fn checks(&self) -> usize {
         (self.redundant + 2).saturating_sub(self.deficit.min(2))

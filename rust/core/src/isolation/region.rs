@@ -29,7 +29,7 @@ impl Region {
     /// What loads a sensor directly; none: what no sensor in use carries.
     fn set(&mut self, robot: &Robot, tree: &SensorTree, sensor: Option<usize>) {
         for body in WORLD + 1..robot.body_count() {
-            self.joints[body] = in_use(tree, tree.before_joint(robot, body)) == sensor;
+            self.joints[body] = in_use(tree, before_joint(robot, tree, body)) == sensor;
             self.feels[robot.velocity_range(body)].fill(self.joints[body]);
         }
         for (link, member) in self.links.iter_mut().enumerate() {
@@ -46,6 +46,19 @@ impl Region {
     pub fn links_of<'a>(&'a self, robot: &'a Robot, body: usize) -> impl Iterator<Item = usize> + 'a {
         robot.links_of_body(body).iter().copied().filter(|link| self.links[*link])
     }
+}
+
+/// The nearest sensor, in use or not, that the joint which moves a body lies behind.
+fn before_joint(robot: &Robot, tree: &SensorTree, mut body: usize) -> Option<usize> {
+    while body != WORLD {
+        let mut parents =
+            robot.links().iter().filter(|link| link.body == body).filter_map(|link| link.parent);
+        if let Some(parent) = parents.find(|parent| robot.links()[*parent].body != body) {
+            return tree.fixed_of_link(parent);
+        }
+        body = robot.parent_body(body);
+    }
+    None
 }
 
 /// The nearest sensor in use, from one towards the base.

@@ -33,7 +33,7 @@ impl ContactIsolator {
         }
         self.isolation.rank_deficit += self.several.rank_deficit;
         // Tolerances are wider than the thresholds; what contradicts those is not located.
-        if self.unexplained_share() > CONTRADICTION {
+        if self.several.contradicted || self.unexplained_share() > CONTRADICTION {
             self.isolation.contacts[first..].iter_mut().for_each(|contact| contact.located = false);
         }
     }

@@ -34,9 +34,16 @@ pub(super) struct Root {
     pub axes: [Vector6<f64>; 6],
     pub value: [f64; 6],
     pub tolerance: [f64; 6],
+    /// What the tolerance is without its share of the wrench.
+    pub threshold: [f64; 6],
 }
 
 impl Root {
+    /// The same with the thresholds for tolerances.
+    pub fn narrow(&self) -> Self {
+        Self { tolerance: self.threshold, ..*self }
+    }
+
     /// The wrench that is measured.
     pub fn estimate(&self) -> WrenchEstimate {
         let mut rows = WrenchRows::new();
@@ -57,7 +64,8 @@ impl TorqueRows {
         Self { axes: vec![Vector6::zeros(); nv], torque: vec![0.0; nv], tolerance: vec![1.0; nv], root: None }
     }
 
-    /// `measured` is the part of the torque that sensors have explained already: it errs, too.
+    /// `measured` is the part of the torque that sensors have explained already: it errs, too. Tolerances are the
+    /// thresholds, `widened` by shares of the torques or not.
     pub fn set(
         &mut self,
         robot: &Robot,
@@ -65,6 +73,7 @@ impl TorqueRows {
         torque: &[f64],
         measured: &[f64],
         threshold: &[f64],
+        widened: bool,
     ) {
         let reference = Vector3::zeros();
         for body in 1..robot.body_count() {
@@ -74,7 +83,8 @@ impl TorqueRows {
         }
         self.torque.copy_from_slice(torque);
         let largest = torque.iter().fold(0.0_f64, |largest, torque| largest.max(torque.abs()));
-        for (k, tolerance) in self.tolerance.iter_mut().enumerate() {
+        self.tolerance.copy_from_slice(threshold);
+        for (k, tolerance) in self.tolerance.iter_mut().enumerate().filter(|_| widened) {
             let shares = (TORQUE_SHARE * torque[k]).hypot(LARGEST_SHARE * largest);
             *tolerance = shares.hypot(TORQUE_SHARE * measured[k]).hypot(threshold[k]);
         }

@@ -79,7 +79,7 @@ impl ContactIsolator {
         let certain = over(LEFT_OVER);
         std::mem::swap(&mut self.region, &mut self.regions.behind[sensor]);
         let first = self.isolation.contacts.len();
-        self.locate(kinematics, &root, &limits, certain);
+        self.locate(kinematics, &root, certain);
         self.isolation.contacts[first..].iter_mut().for_each(|contact| contact.source = Some(sensor));
         std::mem::swap(&mut self.region, &mut self.regions.behind[sensor]);
     }
@@ -121,12 +121,12 @@ impl ContactIsolator {
             }
         });
         let tolerance = std::array::from_fn(|i| limits[i].hypot(TORQUE_SHARE * spread[i]));
-        (Root { axes, value: std::array::from_fn(|i| value[i]), tolerance }, spread)
+        (Root { axes, value: value.into(), tolerance, threshold: (*limits).into() }, spread)
     }
 
     /// One force that explains the wrench, or several that explain it and the joints' torques; `certain`: the wrench
     /// is more than an error of the sensors.
-    fn locate(&mut self, kinematics: &Kinematics, root: &Root, limits: &Vector6<f64>, certain: bool) {
+    fn locate(&mut self, kinematics: &Kinematics, root: &Root, certain: bool) {
         let wrench = root.estimate();
         let moment = wrench.moment_along().abs();
         if moment > EXACT && !certain {
@@ -147,8 +147,8 @@ impl ContactIsolator {
         if moment <= CONTRADICTION {
             if let Some(hit) = self.hit_in_region(kinematics, tip, &wrench) {
                 // What contradicts the thresholds is not located.
-                let strict = Root { tolerance: std::array::from_fn(|i| limits[i]), ..*root };
-                let determined = moment <= EXACT || strict.estimate().moment_along().abs() <= CONTRADICTION;
+                let narrow = root.narrow().estimate().moment_along().abs();
+                let determined = moment <= EXACT || narrow <= CONTRADICTION;
                 self.report_found(kinematics, &Found::new(wrench, hit), determined);
                 return;
             }

@@ -73,6 +73,8 @@ pub(super) struct SeveralContacts {
     pub rank_deficit: usize,
     /// Whether more conditions were met than unknowns were fitted.
     pub verified: bool,
+    /// Whether the thresholds contradict the solution.
+    pub contradicted: bool,
     /// Whether more components are open than two forces on lines have conditions: the solutions are samples.
     pub open: bool,
     max_contacts: usize,
@@ -92,6 +94,7 @@ impl SeveralContacts {
             solutions: Vec::with_capacity(SOLUTIONS + 1),
             rank_deficit: 0,
             verified: false,
+            contradicted: false,
             open: false,
             max_contacts,
             tips: TipSearch::new(robot),
@@ -110,6 +113,7 @@ impl SeveralContacts {
         self.rank_deficit = 0;
         self.verified = false;
         self.open = false;
+        self.contradicted = false;
     }
 
     /// Contacts that explain the torques but for rounding. Uses up `rows`.
@@ -136,11 +140,7 @@ impl SeveralContacts {
                         return true;
                     }
                 }
-                2 => {
-                    if self.solve_pair(scene, rows, [second, first], EXACT) {
-                        return true;
-                    }
-                }
+                2 if self.solve_pair(scene, rows, [second, first], EXACT) => return true,
                 _ => {}
             }
             if !(0..count).any(|index| self.peel(scene, rows, index)) {
@@ -153,12 +153,23 @@ impl SeveralContacts {
     }
 
     /// Contacts that explain the torques within their tolerances. `tips` feel them.
-    pub fn solve_roughly(&mut self, scene: Scene, rows: &TorqueRows, tips: &[usize]) -> bool {
+    /// Points are open where the tolerances are `widened` beyond the thresholds.
+    pub fn solve_roughly(&mut self, scene: Scene, rows: &TorqueRows, tips: &[usize], widened: bool) -> bool {
+        let solved = self.fit(scene, rows, tips);
+        self.contradicted = widened;
+        solved
+    }
+
+    fn fit(&mut self, scene: Scene, rows: &TorqueRows, tips: &[usize]) -> bool {
         self.clear();
         let solved = match *tips {
             [tip] => {
                 let mut best: Option<(f64, usize)> = None;
                 for before in scene.region.chain(scene.robot, tip).filter(|before| *before != tip) {
+                    // Else one wrench explains all that joints behind would tell of a second contact.
+                    if rest_is_explained(scene, rows, before, tip) {
+                        continue;
+                    }
                     let solved = self.solve_pair(scene, rows, [before, tip], GOOD) && self.verified;
                     if let (true, Some(solution)) = (solved, self.solutions.first()) {
                         if best.is_none_or(|(misfit, _)| solution.misfit < misfit) {
@@ -323,8 +334,7 @@ impl SeveralContacts {
             }
             let wrenches = pair.wrenches(&[0.0; 6]);
             let misfit = pair.misfit(&wrenches);
-            // Also where the misfit is not a number.
-            if !(misfit <= limit) {
+            if exceeds(misfit, limit) {
                 return false;
             }
             let hits = [0, 1].map(|i| self.hit_behind(scene, rows, bodies[i], &wrenches[i], limit));
@@ -351,7 +361,7 @@ impl SeveralContacts {
             }
             return;
         }
-        if pair.misfit(&pair.wrenches(&[0.0; 6])).is_nan() {
+        if exceeds(pair.unexplained_share(), limit) {
             return;
         }
         self.search.search(scene, pair);
@@ -374,7 +384,7 @@ impl SeveralContacts {
     fn try_open(&mut self, scene: Scene, pair: &PairEstimate, open: &Open, limit: f64) -> bool {
         let wrenches = pair.wrenches(open);
         let misfit = pair.misfit(&wrenches);
-        if !(misfit <= limit) {
+        if exceeds(misfit, limit) {
             return false;
         }
         let hits = [0, 1].map(|i| self.hit_on(scene, pair.bodies[i], &wrenches[i]));
@@ -439,6 +449,26 @@ impl SeveralContacts {
         }
         best
     }
+}
+
+/// Above the limit, or not a number.
+pub(super) fn exceeds(misfit: f64, limit: f64) -> bool {
+    misfit.is_nan() || misfit > limit
+}
+
+/// Whether all joints behind `before` on the way to `tip` feel what the total wrench of the joints up to there causes.
+fn rest_is_explained(scene: Scene, rows: &TorqueRows, before: usize, tip: usize) -> bool {
+    let robot = scene.robot;
+    let mut wrench_rows = WrenchRows::new();
+    rows.push_root(&mut wrench_rows);
+    for joint in scene.region.chain(robot, before) {
+        rows.push_joint(robot, joint, &mut wrench_rows);
+    }
+    let total = WrenchEstimate::from_rows(wrench_rows, Vector3::zeros());
+    let explained = |k: usize| (total.torque_on(&rows.axes[k]) - rows.torque[k]).abs() <= rows.tolerance[k];
+    let behind = |joint: &usize| !robot.chain(before).contains(joint);
+    let mut rest = scene.region.chain(robot, tip).filter(behind);
+    total.rank < 6 || rest.all(|joint| robot.velocity_range(joint).all(explained))
 }
 
 /// The first joint on the way from the base to `tip` that contradicts the total wrench of the joints before it.

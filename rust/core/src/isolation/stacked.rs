@@ -5,7 +5,7 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 
 use super::least_squares::LeastSquares;
 use super::rows::{Root, TorqueRows, LEVER};
-use super::several::Scene;
+use super::several::{exceeds, Scene};
 use super::wrench::{WrenchEstimate, RANK_TOLERANCE};
 use crate::robot::Robot;
 
@@ -39,7 +39,7 @@ impl Stacked {
     pub fn estimate(&mut self, scene: Scene, rows: &TorqueRows, bodies: &[usize]) -> usize {
         self.contacts = bodies.len();
         self.system.reset(6 * bodies.len());
-        if let Some(Root { axes, value, tolerance }) = &rows.root {
+        if let Some(Root { axes, value, tolerance, .. }) = &rows.root {
             for ((axis, value), tolerance) in axes.iter().zip(value).zip(tolerance) {
                 self.system.add_row(value / tolerance);
                 (0..bodies.len()).for_each(|index| self.set_wrench(index, axis, 1.0 / tolerance));
@@ -97,8 +97,8 @@ impl Stacked {
         let checks = (self.redundant() + self.contacts).max(1) as f64;
         let mut squares = self.unexplained;
         for index in 0..self.contacts {
-            // Before the costly part; also where it is not a number.
-            if !(squares <= limit * limit * checks) {
+            // Before the costly part.
+            if exceeds(squares, limit * limit * checks) {
                 return None;
             }
             squares += self.wrench(index).moment_along().powi(2);
@@ -115,7 +115,7 @@ impl Stacked {
     pub fn identify(&mut self, scene: Scene, rows: &TorqueRows, places: &[(usize, Vector3<f64>)]) -> bool {
         self.system.reset(3 * places.len());
         let bodies = places.iter().map(|(body, _)| *body);
-        if let Some(Root { axes, value, tolerance }) = &rows.root {
+        if let Some(Root { axes, value, tolerance, .. }) = &rows.root {
             for ((axis, value), tolerance) in axes.iter().zip(value).zip(tolerance) {
                 self.system.add_row(value / tolerance);
                 for (index, (_, point)) in places.iter().enumerate() {

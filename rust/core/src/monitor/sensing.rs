@@ -45,12 +45,7 @@ impl Sensing {
         let is_wanted = tree.wanted(wanted)?;
         let mut behind_wanted = vec![false; gain.len()];
         for body in 1..robot.body_count() {
-            let at_joint = |sensor: usize| {
-                let link = &robot.links()[tree.link(sensor)];
-                link.body == body && link.parent.is_none_or(|parent| robot.links()[parent].body != body)
-            };
-            let before = tree.before_joint(robot, body).is_some_and(|sensor| is_wanted[sensor]);
-            if before || (0..tree.len()).any(|sensor| is_wanted[sensor] && at_joint(sensor)) {
+            if tree.at_joint(robot, body).is_some_and(|sensor| is_wanted[sensor]) {
                 behind_wanted[robot.velocity_range(body)].fill(true);
             }
         }

@@ -33,20 +33,14 @@ impl DistalPart {
 /// so that a body split by no sensor counts as the robot has it.
 pub(super) fn distal_parts(robot: &Robot, tree: &SensorTree) -> Vec<DistalPart> {
     let links = robot.links();
-    let mut first_region: Vec<Option<usize>> = vec![None; robot.body_count()];
     let mut parts = vec![];
     for index in WORLD + 1..robot.body_count() {
         let body = &robot.bodies[index];
-        let is_first = |parent: Option<usize>| parent.is_none_or(|parent| links[parent].body != index);
-        let first = links.iter().position(|link| link.body == index && is_first(link.parent));
-        first_region[index] = match first {
-            Some(link) => tree.fixed_of_link(link),
-            None => first_region[body.parent],
-        };
+        let first_region = tree.at_joint(robot, index);
         let mut rest = DistalPart::new(body.mass, body.com, body.inertia);
         for (number, link) in links.iter().enumerate().filter(|(_, link)| link.body == index) {
             let region = tree.fixed_of_link(number);
-            if region == first_region[index] {
+            if region == first_region {
                 continue;
             }
             let turn = &link.placement.rotation;
@@ -57,7 +51,7 @@ pub(super) fn distal_parts(robot: &Robot, tree: &SensorTree) -> Vec<DistalPart> 
             rest.rotational -= part.rotational;
             add(&mut parts, region, index, part);
         }
-        add(&mut parts, first_region[index], index, rest);
+        add(&mut parts, first_region, index, rest);
     }
     parts
 }

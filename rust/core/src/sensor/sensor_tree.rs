@@ -131,22 +131,15 @@ impl SensorTree {
         self.nearest[link]
     }
 
-    /// The nearest sensor, in use or not, that the joint which moves a body lies behind: all that a joint moves loads
-    /// the sensors before it.
-    pub(crate) fn before_joint(&self, robot: &Robot, body: usize) -> Option<usize> {
-        let mut body = body;
-        while body != WORLD {
-            let first = robot
-                .links()
-                .iter()
-                .filter(|link| link.body == body)
-                .find_map(|link| link.parent.filter(|parent| robot.links()[*parent].body != body));
-            if let Some(parent) = first {
-                return self.nearest[parent];
-            }
-            body = robot.parent_body(body);
+    /// The nearest sensor, in use or not, that all that a body's joint moves loads: at that joint's own link or before.
+    pub(crate) fn at_joint(&self, robot: &Robot, body: usize) -> Option<usize> {
+        let links = robot.links();
+        let is_first = |parent: Option<usize>| parent.is_none_or(|parent| links[parent].body != body);
+        match links.iter().position(|link| link.body == body && is_first(link.parent)) {
+            Some(link) => self.nearest[link],
+            None if body == WORLD => None,
+            None => self.at_joint(robot, robot.parent_body(body)),
         }
-        None
     }
 
     /// Whether a sensor lies behind another or is that one, in use or not.
