@@ -116,7 +116,8 @@ def test_noise_passed_is_the_observers() -> None:
 @pytest.mark.parametrize(
     ("arguments", "named"),
     [
-        ({"robot": "atlas"}, r"robot: .*'atlas'; there is iiwa14"),
+        ({"robot": "talos"}, r"robot: .*'talos'; there is iiwa14, atlas"),
+        ({"sensor_noise": (1.0, 0.0)}, "sensor_noise: 'iiwa14' has no force/torque sensors"),
         ({"seed": -1}, "seed"),
         ({"noise": (-1.0, 0.0)}, "noise: percent"),
         ({"noise": (0.0, np.nan)}, "noise: newton_metres"),
@@ -156,7 +157,7 @@ def test_table_without_a_terminal(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert picture.exists()
 
 
-@pytest.mark.parametrize("arguments", [["--robot", "atlas"], ["--noise", "x", "1"], ["--gain", "-1"]])
+@pytest.mark.parametrize("arguments", [["--robot", "talos"], ["--noise", "x", "1"], ["--gain", "-1"]])
 def test_wrong_command_line(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command(["demo", *arguments]) == 2
     assert "Traceback" not in capsys.readouterr().err

@@ -1,4 +1,6 @@
-"""A simulated arm is hit while it moves fast: what it feels, against the truth.
+"""A simulated robot is hit: what it feels, against the truth.
+
+"iiwa14" is an arm that is hit while it moves fast; "atlas" a humanoid that is pushed while it stands.
 
 `run` simulates and scores, `save_picture` draws, `as_data` gives what `--json` prints.
 """
@@ -30,7 +32,7 @@ __all__ = [
     "save_picture",
 ]
 
-ROBOTS = ("iiwa14",)
+ROBOTS = ("iiwa14", "atlas")
 
 
 def run(
@@ -38,15 +40,17 @@ def run(
     robot: str = "iiwa14",
     seed: int = 0,
     noise: tuple[float, float] = (0.0, 0.0),
+    sensor_noise: tuple[float, float] = (0.0, 0.0),
     gain: float | None = None,
     on_progress: Callable[[Progress], None] | None = None,
 ) -> DemoResult:
-    """Simulates the robot on a fast motion, hits it at random, and scores what a `ContactMonitor` says.
+    """Simulates the robot, hits it at random, and scores what a `ContactMonitor` says.
 
     Args:
         robot: one of `ROBOTS`.
         seed: of the motion, the hits and the noise; same seed, same result.
         noise: standard deviation of every measured torque, new each tick: percent of the torque, and [Nm].
+        sensor_noise: standard deviation of every measured wrench of "atlas", new each tick: [N] and [Nm].
         gain: of the observer [1/s]; by default from the noise, see `settings`.
         on_progress: called every few ticks and after every hit.
 
@@ -59,6 +63,13 @@ def run(
     if seed < 0:
         raise InputError(f"seed: must be zero or positive, not {seed}")
     require("mujoco")
+    if robot == "atlas":
+        from .atlas.experiment import run_experiment as run_standing
+        from .atlas.settings import SensorNoise
+
+        return run_standing(seed, Noise(*noise), SensorNoise(*sensor_noise), gain, on_progress)
+    if any(sensor_noise):
+        raise InputError(f"sensor_noise: '{robot}' has no force/torque sensors; leave it at zero")
     from .experiment import run_experiment
 
     return run_experiment(robot, seed, Noise(*noise), gain, on_progress)
@@ -72,6 +83,10 @@ def save_picture(result: DemoResult, path: str | os.PathLike[str]) -> Path:
         MissingExtraError: matplotlib is not installed.
     """
     require("matplotlib")
+    if result.standing is not None:
+        from .atlas.figure import save_figure as save_standing
+
+        return save_standing(result, path)
     from .figure import save_figure
 
     return save_figure(result, path)

@@ -17,11 +17,17 @@ def register(parent: typer.Typer) -> None:
 
 
 def command(
-    robot: Annotated[str, typer.Option(help="Robot to simulate: iiwa14.")] = "iiwa14",
+    robot: Annotated[
+        str, typer.Option(help="Robot to simulate: iiwa14, an arm in motion; atlas, a humanoid that stands.")
+    ] = "iiwa14",
     seed: Annotated[int, typer.Option(help="Of motion, hits and noise; same seed, same result.")] = 0,
     noise: Annotated[
         tuple[float, float],
         typer.Option(help="Standard deviation of the measured torques: percent of the torque, and Nm."),
+    ] = (0.0, 0.0),
+    sensor_noise: Annotated[
+        tuple[float, float],
+        typer.Option(help="The same of atlas's force/torque sensors: N, and Nm."),
     ] = (0.0, 0.0),
     gain: Annotated[
         float | None, typer.Option(help="Observer gain [1/s]; by default 500, with noise 250.")
@@ -29,7 +35,7 @@ def command(
     out: Annotated[Path, typer.Option(help="Picture to write.")] = Path("contactsense_demo.png"),
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON only.")] = False,
 ) -> None:
-    """Hit a simulated arm in fast motion; show what it feels against the truth."""
+    """Hit a simulated robot; show what it feels against the truth."""
     require("mujoco", "matplotlib", "rich")
     from rich.console import Console
 
@@ -37,10 +43,12 @@ def command(
 
     console = Console()
     if as_json or not console.is_terminal:
-        result = run(robot=robot, seed=seed, noise=noise, gain=gain)
+        result = run(robot=robot, seed=seed, noise=noise, sensor_noise=sensor_noise, gain=gain)
     else:
         with live_table(console) as show:
-            result = run(robot=robot, seed=seed, noise=noise, gain=gain, on_progress=show)
+            result = run(
+                robot=robot, seed=seed, noise=noise, sensor_noise=sensor_noise, gain=gain, on_progress=show
+            )
     picture = save_picture(result, out)
     if as_json:
         print(json.dumps({**as_data(result), "picture": str(picture)}, indent=2, allow_nan=False))

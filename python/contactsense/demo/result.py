@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 class HitResult:
     """One hit and what the monitor said of it at its strongest moment.
 
-    That moment is the tick of the detected contact with the largest torque in thresholds; it is chosen
-    without the truth. Errors are None where there is no estimate.
+    That moment is the tick of the detected contact with the largest torque of collisions in thresholds; it is
+    chosen without the truth. Errors are None where there is no estimate.
     """
 
     number: int  # from 1
@@ -39,6 +39,7 @@ class HitResult:
     true_force: FloatArray  # (3,) at its peak, direction as then [N]
     point: FloatArray | None  # (3,) estimated [m]
     estimated_force: FloatArray | None  # (3,) [N]
+    elsewhere: dict[str, int]  # other links that were named meanwhile, and on how many ticks
 
     @property
     def link_right(self) -> bool:
@@ -50,11 +51,28 @@ class Signals:
     """One row a tick."""
 
     time: FloatArray  # (n,) [s]
-    true_torque: FloatArray  # (n, nv) external torque [Nm]
-    torque: FloatArray  # (n, nv) its estimate [Nm]
+    true_torque: FloatArray  # (n, nv) external torque of the hits [Nm]
+    torque: FloatArray  # (n, nv) estimate of all external torque [Nm]
     true_force: FloatArray  # (n,) magnitude [N]
-    force: FloatArray  # (n,) of the located contact, NaN where there is none [N]
+    force: FloatArray  # (n,) of the (strongest) located contact, NaN where there is none [N]
     collision: NDArray[np.bool_]  # (n,)
+
+
+@dataclass(frozen=True)
+class Standing:
+    """How a humanoid stood while it was pushed."""
+
+    feet: tuple[str, ...]  # sensors whose contacts are wanted
+    ground: FloatArray  # (n, feet) measured force of the ground, a row a tick [N]
+    moved: float  # largest way of the base [m]
+    turned: float  # largest angle of the base [rad]
+    sensor_noise: tuple[float, float]  # standard deviations [N], [Nm]
+    wrench_threshold: FloatArray  # (sensors, 6) [N], [Nm]
+
+    @property
+    def kept(self) -> bool:
+        """Whether it stood throughout."""
+        return self.moved < 0.1 and self.turned < 0.2
 
 
 @dataclass(frozen=True)
@@ -76,11 +94,12 @@ class DemoResult:
     seed: int
     noise: Noise
     settings: Settings
-    planned_speed: float  # fastest joint of the planned motion [rad/s]
+    planned_speed: float  # fastest joint of the planned motion; zero where it stands [rad/s]
     hits: tuple[HitResult, ...]
     false_alarms: int
     signals: Signals
     timing: Timing
+    standing: Standing | None = None  # of a humanoid
 
     @property
     def detected(self) -> int:
@@ -109,6 +128,13 @@ class Progress:
 
 def as_data(result: DemoResult) -> dict[str, Any]:
     """Plain numbers and texts, for JSON; None where there is no estimate."""
+    data = _common_data(result)
+    if result.standing is not None:
+        data["standing"] = _standing_data(result.standing)
+    return data
+
+
+def _common_data(result: DemoResult) -> dict[str, Any]:
     return {
         "robot": result.robot_name,
         "seed": result.seed,
@@ -138,6 +164,18 @@ def as_data(result: DemoResult) -> dict[str, Any]:
     }
 
 
+def _standing_data(standing: Standing) -> dict[str, Any]:
+    newtons, newton_metres = standing.sensor_noise
+    return {
+        "kept": standing.kept,
+        "base_moved_mm": 1e3 * standing.moved,
+        "base_turned_deg": float(np.degrees(standing.turned)),
+        "wanted_contacts": list(standing.feet),
+        "sensor_noise": {"newtons": newtons, "newton_metres": newton_metres},
+        "wrench_threshold": standing.wrench_threshold.tolist(),
+    }
+
+
 def _hit_data(hit: HitResult) -> dict[str, Any]:
     return {
         "number": hit.number,
@@ -152,6 +190,7 @@ def _hit_data(hit: HitResult) -> dict[str, Any]:
         "point_error_mm": _scaled(hit.point_error, 1e3),
         "point_std_mm": _scaled(hit.point_std, 1e3),
         "force_error_percent": _scaled(hit.force_error, 100.0),
+        "ticks_named_elsewhere": hit.elsewhere,
     }
 
 

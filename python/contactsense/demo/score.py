@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 import numpy as np
 
 from .. import Contact, ContactReport, Robot
@@ -13,6 +15,14 @@ from .settings import FloatArray
 FADING = 0.1
 
 
+def strongest(report: ContactReport) -> Contact | None:
+    """The located contact with the largest force; where none is located, the first of all, if any."""
+    located = [contact for contact in report.contacts if contact.located]
+    if located:
+        return max(located, key=lambda contact: float(np.linalg.norm(contact.force)))
+    return report.contacts[0] if report.contacts else None
+
+
 class HitScorer:
     """Watches the ticks of one hit."""
 
@@ -20,6 +30,7 @@ class HitScorer:
         self, robot: Robot, push: Push, number: int, threshold: FloatArray, idle_q: FloatArray
     ) -> None:
         self._robot, self._push, self._number, self._threshold = robot, push, number, threshold
+        self._elsewhere: Counter[str] = Counter()
         self._delay: float | None = None
         self._strength = 0.0
         self._time: float | None = None
@@ -41,11 +52,13 @@ class HitScorer:
             return
         if self._delay is None:
             self._delay = time - self._push.start
-        strength = float(np.linalg.norm(report.external_torque / self._threshold))
+        named = {contact.link for contact in report.contacts}
+        self._elsewhere.update(named - {self._push.link})
+        strength = float(np.linalg.norm(report.collision_torque / self._threshold))
         # Detection holds for some time after the last signal; isolation answers only to a present one.
         if report.contacts and strength > self._strength:
             self._strength, self._time, self._q = strength, time, q.copy()
-            self._contact = report.contacts[0]
+            self._contact = strongest(report)
 
     def result(self) -> HitResult:
         """The score."""
@@ -77,4 +90,5 @@ class HitScorer:
             true_force=true_force,
             point=point,
             estimated_force=force,
+            elsewhere=dict(self._elsewhere),
         )

@@ -11,7 +11,7 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
-from .result import DemoResult, HitResult, Progress
+from .result import DemoResult, HitResult, Progress, Standing
 from .settings import DEVIATIONS, FLOOR, Settings
 
 # Header, and whether the column is aligned to the right.
@@ -89,8 +89,11 @@ def _number(value: float | None, factor: float) -> str:
     return "-" if value is None else f"{factor * value:.1f}"
 
 
-def settings_text(settings: Settings) -> str:
+def settings_text(result: DemoResult) -> str:
     """How the monitor is set."""
+    settings, standing = result.settings, result.standing
+    if standing is not None:
+        return _standing_settings_text(settings, standing)
     thresholds = " ".join(f"{threshold:.2f}" for threshold in settings.torque_threshold)
     return (
         f"Observer gain {settings.observer_gain:.0f}/s; torque thresholds {thresholds} Nm: the larger of "
@@ -98,15 +101,30 @@ def settings_text(settings: Settings) -> str:
     )
 
 
+def _standing_settings_text(settings: Settings, standing: Standing) -> str:
+    torque, wrench = settings.torque_threshold, standing.wrench_threshold
+    return (
+        f"Observer gain {settings.observer_gain:.0f}/s; thresholds: base {torque[:3].max():.1f} N and "
+        f"{torque[3:6].max():.1f} Nm, joints {torque[6:].min():.1f} to {torque[6:].max():.1f} Nm, "
+        f"sensors {wrench[:, :3].max():.1f} N and {wrench[:, 3:].max():.1f} Nm: the larger of a floor "
+        f"and {DEVIATIONS:g} standard deviations at the stated noise. Wanted contacts: "
+        f"{', '.join(standing.feet)}"
+    )
+
+
+def _headline(result: DemoResult) -> str:
+    noise, standing = result.noise, result.standing
+    text = f"seed {result.seed}, torque noise {noise.percent:g} % and {noise.newton_metres:g} Nm"
+    if standing is None:
+        return f"{result.robot_name} at up to {result.planned_speed:.1f} rad/s, {text}"
+    newtons, newton_metres = standing.sensor_noise
+    return f"{result.robot_name} stands, {text}, sensor noise {newtons:g} N and {newton_metres:g} Nm"
+
+
 def print_result(console: Console, result: DemoResult, picture: str) -> None:
     """The whole answer, for people."""
-    noise = result.noise
-    console.print(
-        f"{result.robot_name} at up to {result.planned_speed:.1f} rad/s, seed {result.seed}, "
-        f"torque noise {noise.percent:g} % and {noise.newton_metres:g} Nm",
-        highlight=False,
-    )
-    console.print(settings_text(result.settings), highlight=False)
+    console.print(_headline(result), highlight=False)
+    console.print(settings_text(result), highlight=False)
     console.print(hit_table(result.hits))
     console.print(_NOTES, style="dim", highlight=False)
     console.print(summary_text(result), highlight=False, style="bold")
@@ -125,7 +143,11 @@ def summary_text(result: DemoResult) -> str:
         text += f" (point error {errors[len(errors) // 2]:.1f} mm median, {errors[-1]:.1f} mm worst)"
     timing = result.timing
     alarms = f"{result.false_alarms} false alarm{'' if result.false_alarms == 1 else 's'}"
+    standing = ""
+    if result.standing is not None:
+        kept = "It kept standing" if result.standing.kept else "It FELL"
+        standing = f"{kept}: its pelvis moved by {1e3 * result.standing.moved:.1f} mm at most.\n"
     return (
-        f"{text}; {alarms}.\nMonitor call from Python: {1e6 * timing.mean:.1f} us mean, "
+        f"{text}; {alarms}.\n{standing}Monitor call from Python: {1e6 * timing.mean:.1f} us mean, "
         f"{1e6 * timing.median:.1f} us median, {1e6 * timing.max:.0f} us max over {timing.calls} ticks."
     )

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import pinocchio as pin
@@ -14,25 +13,12 @@ from contactsense.errors import InputError, ModelError
 from ._arrays import FloatArray, positive, vector
 from ._mujoco import mujoco
 from .coordinates import Coordinates
+from .floor import Floor
 from .geoms import Geom
+from .measurement import Measurement
 from .mjcf import Integrator, mjcf_string
-from .noise import TorqueNoise
-
-
-@dataclass(frozen=True)
-class Measurement:
-    """What the sensors give at one control tick.
-
-    The motors hold `tau` from this tick to the next, so it jumps at every tick. Feed `tau_mean` to whatever
-    integrates torque over ticks by the trapezoidal rule: it is what a sensor reads that samples across the
-    jump, and keeps the impulse right to second order. With `tau` itself such a rule is half a tick early.
-    """
-
-    time: float  # [s]
-    q: FloatArray  # (nq,) Pinocchio's order
-    v: FloatArray  # (nv,)
-    tau: FloatArray  # (actuated,) motor torque from this tick on, with noise if any [Nm]
-    tau_mean: FloatArray  # (actuated,) mean of the torques before and after this tick, same noise [Nm]
+from .noise import TorqueNoise, WrenchNoise
+from .sensors import SensorMount, WrenchReader
 
 
 class SimulatedRobot:
@@ -50,6 +36,9 @@ class SimulatedRobot:
         mjcf: MJCF text to simulate in place of the one made from `model`, for worlds with more in them; its
             robot's joints and motors bear the joint names of `model`; its time step is overridden.
         noise: of the measured torques; none by default.
+        floor: to stand on; it touches the `geoms` that have its bit in `conaffinity`.
+        sensors: force/torque sensors, read in this order; with `mjcf`, it must have them.
+        wrench_noise: of their readings; none by default.
 
     Raises:
         ModelError: the model cannot be simulated; names the joint.
@@ -66,14 +55,19 @@ class SimulatedRobot:
         geoms: Iterable[Geom] = (),
         mjcf: str | None = None,
         noise: TorqueNoise | None = None,
+        floor: Floor | None = None,
+        sensors: Sequence[SensorMount] = (),
+        wrench_noise: WrenchNoise | None = None,
     ) -> None:
         if substeps < 1:
             raise InputError(f"substeps must be 1 or more, not {substeps}")
         step = positive("dt", dt) / substeps
         shapes = tuple(geoms)
-        if mjcf is not None and shapes:
-            raise InputError("geoms must be in mjcf itself where that is given")
-        text = mjcf or mjcf_string(model, dt=step, integrator=integrator, geoms=shapes)
+        if mjcf is not None and (shapes or floor):
+            raise InputError("geoms and floor must be in mjcf itself where that is given")
+        text = mjcf or mjcf_string(
+            model, dt=step, integrator=integrator, geoms=shapes, floor=floor, sensors=sensors
+        )
         self.model = model
         self.dt = dt
         try:
@@ -85,7 +79,8 @@ class SimulatedRobot:
         self.coordinates = Coordinates(model, self.mj_model)
         self._base = 6 if self.coordinates.floating_base else 0
         self._substeps = substeps
-        self._noise = noise
+        self._noise, self._wrench_noise = noise, wrench_noise
+        self._wrenches = WrenchReader(self.mj_model, sensors)
         self._motors = _motor_numbers(model, self.mj_model, self._base)
         self.reset(pin.neutral(model))
 
@@ -113,7 +108,8 @@ class SimulatedRobot:
         self.mj_data.qvel[:] = self.coordinates.qvel(posture, velocity)
         self._tau: FloatArray | None = None
         mujoco.mj_forward(self.mj_model, self.mj_data)
-        self._measurement = self._sample(np.zeros(self.model.nv - self._base))
+        self._load = self._wrenches.read(self.mj_data)
+        self._measurement = self._sample(np.zeros(self.model.nv - self._base), (0.0, self.q, self.v))
 
     def step(self, tau: ArrayLike) -> Measurement:
         """Hold motor torques `tau` [Nm] for one tick and move on; returns the measurement at its beginning.
@@ -121,14 +117,16 @@ class SimulatedRobot:
         Forces put on with `apply_force` act throughout, until cleared.
         """
         torques = vector("tau", tau, self.model.nv - self._base)
-        self._measurement = self._sample(torques)
-        self._tau = torques
         self.mj_data.ctrl[self._motors] = torques
-        for _ in range(self._substeps):
+        state = (self.time, self.q, self.v)
+        mujoco.mj_step(self.mj_model, self.mj_data)
+        self._measurement = self._sample(torques, state)
+        self._tau = torques
+        for _ in range(self._substeps - 1):
             mujoco.mj_step(self.mj_model, self.mj_data)
-        # mj_step leaves poses of the step's beginning; points and forces refer to the present ones.
-        mujoco.mj_kinematics(self.mj_model, self.mj_data)
-        mujoco.mj_comPos(self.mj_model, self.mj_data)
+        # mj_step leaves poses, contacts and sensors of the step's beginning; bring them to the present.
+        mujoco.mj_forward(self.mj_model, self.mj_data)
+        self._load = self._wrenches.read(self.mj_data)
         return self._measurement
 
     def measure(self) -> Measurement:
@@ -180,10 +178,15 @@ class SimulatedRobot:
             raise InputError(f"link: '{link}' is fixed to the world, a force on it moves nothing")
         return int(self.coordinates.bodies[joint])
 
-    def _sample(self, tau: FloatArray) -> Measurement:
-        before = tau if self._tau is None else self._tau
+    def _sample(self, tau: FloatArray, state: tuple[float, FloatArray, FloatArray]) -> Measurement:
+        """MuJoCo's sensors are those with `tau` in `state`; `_load` is as it was under the torque before."""
+        load = self._wrenches.read(self.mj_data)
+        before, load_before = (tau, load) if self._tau is None else (self._tau, self._load)
         error = 0.0 if self._noise is None else self._noise.measure(tau) - tau
-        return Measurement(self.time, self.q, self.v, tau + error, 0.5 * (before + tau) + error)
+        wrenches = 0.5 * (load_before + load)
+        if self._wrench_noise is not None:
+            wrenches = self._wrench_noise.measure(wrenches)
+        return Measurement(*state, tau + error, 0.5 * (before + tau) + error, wrenches)
 
 
 def _motor_numbers(model: pin.Model, mj_model: mujoco.MjModel, base: int) -> list[int]:

@@ -8,7 +8,7 @@ unless asked for: what a momentum observer sees is then motor torque and externa
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -19,8 +19,10 @@ from contactsense.loading.description import JointTuple
 
 from ._arrays import positive
 from ._text import pose_attributes, text
+from .floor import Floor
 from .geoms import Geom
 from .joints import SimulatedJoint, joints
+from .sensors import SensorMount, write_sensors
 
 Integrator: TypeAlias = Literal["Euler", "RK4", "implicit", "implicitfast"]
 
@@ -29,18 +31,30 @@ _LEAST = 1e-12
 
 
 def mjcf_string(
-    model: pin.Model, *, dt: float = 0.001, integrator: Integrator = "RK4", geoms: Iterable[Geom] = ()
+    model: pin.Model,
+    *,
+    dt: float = 0.001,
+    integrator: Integrator = "RK4",
+    geoms: Iterable[Geom] = (),
+    floor: Floor | None = None,
+    sensors: Sequence[SensorMount] = (),
 ) -> str:
     """MJCF text for `model`; arguments and errors as for `mjcf_tree`."""
-    root = mjcf_tree(model, dt=dt, integrator=integrator, geoms=geoms)
+    root = mjcf_tree(model, dt=dt, integrator=integrator, geoms=geoms, floor=floor, sensors=sensors)
     ET.indent(root)
     return ET.tostring(root, encoding="unicode")
 
 
 def mjcf_tree(
-    model: pin.Model, *, dt: float = 0.001, integrator: Integrator = "RK4", geoms: Iterable[Geom] = ()
+    model: pin.Model,
+    *,
+    dt: float = 0.001,
+    integrator: Integrator = "RK4",
+    geoms: Iterable[Geom] = (),
+    floor: Floor | None = None,
+    sensors: Sequence[SensorMount] = (),
 ) -> ET.Element:
-    """MJCF elements for `model`, open to additions (obstacles, sensors) before they are written out.
+    """MJCF elements for `model`, open to additions (obstacles) before they are written out.
 
     Bodies and joints bear Pinocchio's joint names; every joint but a free base has a motor of the same name.
 
@@ -49,6 +63,8 @@ def mjcf_tree(
         dt: time step [s].
         integrator: "RK4" follows the true motion closely; "Euler" is MuJoCo's usual semi-implicit one.
         geoms: shapes to attach; without any, nothing collides.
+        floor: to stand on, for the geoms that are made to touch it; none by default.
+        sensors: force/torque sensors before links that hang on a moving joint.
 
     Raises:
         ModelError: a joint that MuJoCo lacks, or an inertia that no body can have; names the joint.
@@ -73,6 +89,9 @@ def mjcf_tree(
         if geom.joint not in bodies:
             raise InputError(f"geoms: '{geom.name}' is on joint {geom.joint}, the last is {len(bodies) - 1}")
         geom.write(bodies[geom.joint])
+    if floor is not None:
+        floor.write(root, bodies[0])
+    write_sensors(root, bodies, model, sensors)
     return root
 
 

@@ -9,7 +9,13 @@ from pathlib import Path
 
 import pinocchio as pin
 
-from contactsense.errors import InputError, ModelError
+from contactsense.errors import ModelError
+from contactsense.loading.describe_urdf import describe_urdf
+from contactsense.robot import description_file
+
+from .geoms import Geom, geoms_of
+
+_FLOATING = {"iiwa14": False, "atlas": True}
 
 
 def model_from_urdf(path: str | os.PathLike[str], *, floating_base: bool = False) -> pin.Model:
@@ -26,10 +32,15 @@ def model_from_urdf(path: str | os.PathLike[str], *, floating_base: bool = False
 
 def named_model(name: str) -> pin.Model:
     """A robot described in this package: "iiwa14" (fixed base) or "atlas" (free base)."""
-    if name not in ("iiwa14", "atlas"):
-        raise InputError(f"name must be 'iiwa14' or 'atlas', not {name!r}")
-    file = resources.files("contactsense") / "descriptions" / f"{name}.urdf"
-    return _model(file.read_text(encoding="utf-8"), name == "atlas")
+    with resources.as_file(description_file(name)) as path:
+        return model_from_urdf(path, floating_base=_FLOATING[name])
+
+
+def named_geoms(name: str, *, contype: int = 0, conaffinity: int = 0) -> tuple[Geom, ...]:
+    """The shapes of a robot described in this package; masks as in `geoms_of`."""
+    with resources.as_file(description_file(name)) as path:
+        links = describe_urdf(path, floating_base=_FLOATING[name]).links
+    return geoms_of(links, contype=contype, conaffinity=conaffinity)
 
 
 def _model(text: str, floating_base: bool) -> pin.Model:

@@ -1,4 +1,4 @@
-"""Noise of the torque measurement."""
+"""Noise of what joints and force/torque sensors measure."""
 
 from __future__ import annotations
 
@@ -25,4 +25,25 @@ class TorqueNoise:
         """`tau` (n,) as a sensor would read it."""
         relative, absolute = self._generator.standard_normal((2, tau.size))
         measured: FloatArray = tau * (1.0 + 0.01 * self.percent * relative) + self.newton_metres * absolute
+        return measured
+
+
+class WrenchNoise:
+    """Gaussian error of measured wrenches, new at every sample, repeatable by seed.
+
+    Args:
+        newtons: standard deviation of each force component [N].
+        newton_metres: standard deviation of each moment component [Nm].
+        seed: of the generator.
+    """
+
+    def __init__(self, *, newtons: float = 0.0, newton_metres: float = 0.0, seed: int = 0) -> None:
+        self.newtons = not_negative("newtons", newtons)
+        self.newton_metres = not_negative("newton_metres", newton_metres)
+        self._generator = np.random.default_rng(seed)
+
+    def measure(self, wrenches: FloatArray) -> FloatArray:
+        """`wrenches` (n, 6) as sensors would read them."""
+        deviation = np.repeat([self.newtons, self.newton_metres], 3)
+        measured: FloatArray = wrenches + deviation * self._generator.standard_normal(wrenches.shape)
         return measured

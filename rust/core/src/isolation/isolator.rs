@@ -15,7 +15,7 @@ use super::wrench::WrenchEstimate;
 use crate::detection::{check_threshold, check_wrench_threshold, TipSearch};
 use crate::error::{Error, Result};
 use crate::robot::{Kinematics, Robot};
-use crate::sensor::{ForceTorqueSensor, LaggedTorques, SensorTree};
+use crate::sensor::{ForceTorqueSensor, SensorTree, WrenchObserver};
 
 /// All hits of one instant that are kept.
 const CANDIDATES: usize = 512;
@@ -172,7 +172,7 @@ impl ContactIsolator {
         kinematics: &Kinematics,
         tau_ext: &[f64],
         wrenches: &[Vector6<f64>],
-        lagged: Option<&LaggedTorques>,
+        lagged: Option<&WrenchObserver>,
     ) -> &Isolation {
         self.isolation.clear();
         self.divide(kinematics, tau_ext, wrenches, lagged);

@@ -10,7 +10,7 @@ use super::rows::{Root, TORQUE_SHARE};
 use super::wrench::{jacobian_column, WrenchEstimate};
 use crate::robot::motion::{split, stack};
 use crate::robot::Kinematics;
-use crate::sensor::{is_known, sensor_torque, LaggedTorques};
+use crate::sensor::{is_known, sensor_torque, WrenchObserver};
 
 /// A wrench that is a difference of measured ones is none if it is less than this share of them: five standard
 /// deviations of sensors that err by a hundredth.
@@ -26,7 +26,7 @@ impl ContactIsolator {
         kinematics: &Kinematics,
         torque: &[f64],
         wrenches: &[Vector6<f64>],
-        lagged: Option<&LaggedTorques>,
+        lagged: Option<&WrenchObserver>,
     ) {
         self.residual.copy_from_slice(torque);
         self.measured.fill(0.0);
@@ -36,7 +36,7 @@ impl ContactIsolator {
         regions.set_active(robot, active);
         for (sensor, wrench) in wrenches.iter().enumerate().filter(|(sensor, _)| active[*sensor]) {
             let explained = match lagged {
-                Some(lagged) => lagged.lagged(sensor),
+                Some(lagged) => lagged.lagged_torque(sensor),
                 None => {
                     sensor_torque(robot, kinematics, &regions.tree, sensor, wrench, sensed);
                     &*sensed

@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::isolation::{ContactIsolator, Isolation, IsolatorOptions};
 use crate::observer::MomentumObserver;
 use crate::robot::Robot;
-use crate::sensor::{is_known, LoadCompensator};
+use crate::sensor::{is_known, SensorTree};
 
 /// Settings of a [`ContactMonitor`].
 #[derive(Debug, Clone)]
@@ -107,22 +107,17 @@ impl ContactMonitor {
             )));
         }
         let observer = MomentumObserver::new(robot.clone(), options.dt, &options.observer_gain)?;
-        let compensator = LoadCompensator::new(robot.clone(), &options.isolation.sensors)?;
+        let tree = SensorTree::new(&robot, &options.isolation.sensors)?;
         let threshold = &options.isolation.torque_threshold;
         let detector = Detector::with_sensors(
             robot.clone(),
             threshold,
-            compensator.tree(),
+            &tree,
             &options.isolation.wrench_threshold,
             options.hold_time,
         )?;
-        let sensing = Sensing::new(
-            &robot,
-            compensator,
-            &options.isolation.wanted_contacts,
-            observer.gain(),
-            options.dt,
-        )?;
+        let sensing =
+            Sensing::new(&robot, tree, &options.isolation.wanted_contacts, observer.gain(), options.dt)?;
         Ok(Self {
             observer,
             detector,
@@ -157,7 +152,7 @@ impl ContactMonitor {
         self.ticks += 1;
         self.collision_torque.copy_from_slice(&self.external_torque);
         if let (Some(sensing), Some(readings)) = (&mut self.sensing, wrenches) {
-            sensing.update(&mut self.observer, readings, self.dt);
+            sensing.update(&self.observer, readings, self.dt);
             let wanted = sensing.wanted_torque();
             self.collision_torque.iter_mut().zip(wanted).for_each(|(torque, wanted)| *torque -= wanted);
         }
@@ -179,7 +174,7 @@ impl ContactMonitor {
         let kinematics = self.observer.kinematics();
         match &self.sensing {
             Some(sensing) => {
-                let (wrenches, lag) = (sensing.trusted(), Some(sensing.lag()));
+                let (wrenches, lag) = (sensing.trusted(), Some(sensing.wrenches()));
                 self.isolator.isolate_at(kinematics, &self.external_torque, wrenches, lag);
             }
             None => {

@@ -2,7 +2,6 @@
 
 mod bias;
 mod contact_monitor;
-mod prompt_acceleration;
 mod release;
 mod sensing;
 

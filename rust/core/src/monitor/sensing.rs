@@ -1,13 +1,14 @@
-//! Force/torque sensors in a tick: compensation, exclusion of wanted contacts, what is left for detection.
+//! Force/torque sensors in a tick: external wrenches, exclusion of wanted contacts, what is left for detection.
+
+use std::sync::Arc;
 
 use nalgebra::{Vector3, Vector6};
 
-use super::prompt_acceleration::PromptAcceleration;
 use crate::error::Result;
 use crate::observer::MomentumObserver;
 use crate::robot::motion::{split, stack};
 use crate::robot::{Kinematics, Robot};
-use crate::sensor::{is_known, LaggedTorques, LoadCompensator, SensorTree};
+use crate::sensor::{check_readings, is_known, SensorTree, WrenchObserver};
 
 /// A wanted sensor that comes back is trusted after so many time constants of the observer, which by then has
 /// forgotten what the sensor missed.
@@ -16,15 +17,13 @@ const SETTLING: f64 = 5.0;
 /// The sensors of a monitor.
 #[derive(Debug, Clone)]
 pub(super) struct Sensing {
-    compensator: LoadCompensator,
-    lag: LaggedTorques,
+    wrenches: WrenchObserver,
     /// Sensors in use.
     tree: SensorTree,
     wanted: Vec<bool>,
     /// How long a wanted sensor stays untrusted after a gap [s].
     settling_time: f64,
     unsettled: Vec<f64>,
-    prompt: PromptAcceleration,
     wanted_torque: Vec<f64>,
     /// Velocity variables that wanted contacts alone load: behind wanted sensors, and at the same joint.
     behind_wanted: Vec<bool>,
@@ -37,13 +36,12 @@ pub(super) struct Sensing {
 impl Sensing {
     /// `wanted` names sensors; `gain` `(nv,)` and `dt` are the observer's.
     pub fn new(
-        robot: &Robot,
-        compensator: LoadCompensator,
+        robot: &Arc<Robot>,
+        tree: SensorTree,
         wanted: &[String],
         gain: &[f64],
         dt: f64,
     ) -> Result<Self> {
-        let tree = compensator.tree().clone();
         let is_wanted = tree.wanted(wanted)?;
         let mut behind_wanted = vec![false; gain.len()];
         for body in 1..robot.body_count() {
@@ -53,10 +51,9 @@ impl Sensing {
         }
         let slowest = gain.iter().copied().fold(f64::INFINITY, f64::min);
         Ok(Self {
-            lag: LaggedTorques::new(tree.len(), gain, dt),
+            wrenches: WrenchObserver::new(robot.clone(), &tree, gain, dt),
             settling_time: SETTLING / slowest,
             unsettled: vec![0.0; tree.len()],
-            prompt: PromptAcceleration::new(robot, &tree),
             wanted_torque: vec![0.0; gain.len()],
             blind: behind_wanted.clone(),
             behind_wanted,
@@ -64,33 +61,29 @@ impl Sensing {
             trusted: vec![Vector6::zeros(); tree.len()],
             wanted: is_wanted,
             tree,
-            compensator,
         })
     }
 
     /// A tick of `dt`, after the observer's, with checked readings.
-    pub fn update(&mut self, observer: &mut MomentumObserver, readings: &[[f64; 6]], dt: f64) {
-        let robot = observer.robot().clone();
-        let Self { compensator, lag, .. } = self;
-        lag.step();
-        self.prompt.correct(observer, compensator, lag, &mut self.tree, readings);
-        lag.commit(compensator.external());
-        self.find_blind(&robot, dt);
+    pub fn update(&mut self, observer: &MomentumObserver, readings: &[[f64; 6]], dt: f64) {
+        self.wrenches.update(observer.kinematics(), &self.tree, readings);
+        self.tree.set_active(self.wrenches.usable());
+        self.find_blind(observer.robot(), dt);
         self.exclude(observer.kinematics());
         for (sensor, trusted) in self.trusted.iter_mut().enumerate() {
             let settled = self.unsettled[sensor] <= 0.0;
-            *trusted = if settled { self.compensator.external()[sensor] } else { Vector6::repeat(f64::NAN) };
+            *trusted = if settled { self.wrenches.external()[sensor] } else { Vector6::repeat(f64::NAN) };
         }
     }
 
-    /// As [`LoadCompensator::check_readings`].
+    /// As [`crate::sensor::LoadCompensator::check_readings`].
     pub fn check_readings(&self, wrenches: &[[f64; 6]]) -> Result<()> {
-        self.compensator.check_readings(wrenches)
+        check_readings(&self.tree, wrenches)
     }
 
     /// External wrenches of all sensors, NaN where one is left out.
     pub fn external(&self) -> &[Vector6<f64>] {
-        self.compensator.external()
+        self.wrenches.external()
     }
 
     /// The same without wanted contacts: zero at a wanted sensor, NaN where it is not known.
@@ -118,16 +111,15 @@ impl Sensing {
         &self.trusted
     }
 
-    /// The sensors' torques as the observer knows them.
-    pub fn lag(&self) -> &LaggedTorques {
-        &self.lag
+    /// The observer of the sensors' wrenches, which knows their torques, too.
+    pub fn wrenches(&self) -> &WrenchObserver {
+        &self.wrenches
     }
 
     /// Forgets all ticks.
     pub fn reset(&mut self) {
-        self.compensator.reset();
-        self.lag.reset();
-        self.tree.set_active(self.compensator.usable());
+        self.wrenches.reset();
+        self.tree.set_active(self.wrenches.usable());
         self.unsettled.fill(0.0);
         self.wanted_torque.fill(0.0);
         self.blind.copy_from_slice(&self.behind_wanted);
@@ -156,7 +148,7 @@ impl Sensing {
     /// Eq. 20 for the torque, and the same for the wrenches of sensors nearer to the base.
     fn exclude(&mut self, kinematics: &Kinematics) {
         self.wanted_torque.fill(0.0);
-        for (unwanted, external) in self.unwanted.iter_mut().zip(self.compensator.external()) {
+        for (unwanted, external) in self.unwanted.iter_mut().zip(self.wrenches.external()) {
             *unwanted = *external;
         }
         for sensor in 0..self.tree.len() {
@@ -164,7 +156,7 @@ impl Sensing {
                 continue;
             }
             let trusted = self.unsettled[sensor] <= 0.0;
-            let wrench = self.compensator.external()[sensor];
+            let wrench = self.wrenches.external()[sensor];
             let outermost = (0..self.tree.len()).all(|other| {
                 other == sensor
                     || !self.wanted[other]
@@ -172,7 +164,7 @@ impl Sensing {
                     || !self.tree.is_behind(sensor, other)
             });
             if is_known(&wrench) && outermost {
-                let lagged = self.lag.lagged(sensor);
+                let lagged = self.wrenches.lagged_torque(sensor);
                 self.wanted_torque.iter_mut().zip(lagged).for_each(|(sum, torque)| *sum += torque);
             }
             for other in 0..self.tree.len() {

@@ -158,23 +158,6 @@ impl MomentumObserver {
         &self.acceleration
     }
 
-    /// Writes the acceleration at the last step with `ahead` added to the external torque.
-    pub(crate) fn respond(&mut self, ahead: &[f64], acceleration: &mut [f64]) {
-        let Self { robot, forward, kinematics, velocity, total_torque, .. } = self;
-        let torques = self.motor_torque.iter().zip(&self.external_torque).zip(ahead);
-        total_torque
-            .iter_mut()
-            .zip(torques)
-            .for_each(|(sum, ((motor, ext), ahead))| *sum = motor + ext + ahead);
-        forward.evaluate(robot, kinematics, velocity, total_torque, acceleration);
-    }
-
-    /// Puts a better estimate of the acceleration at the last step.
-    pub(crate) fn set_acceleration(&mut self, acceleration: &[f64]) {
-        self.acceleration.copy_from_slice(acceleration);
-        self.acceleration_is_current = true;
-    }
-
     /// The gain `(nv,)` [1/s].
     pub fn gain(&self) -> &[f64] {
         &self.gain

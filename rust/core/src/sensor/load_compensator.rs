@@ -211,7 +211,7 @@ impl LoadCompensator {
 }
 
 /// One reading a sensor; NaN says that there is none, other numbers must be of a size to compute with.
-fn check_readings(tree: &SensorTree, wrenches: &[[f64; 6]]) -> Result<()> {
+pub(crate) fn check_readings(tree: &SensorTree, wrenches: &[[f64; 6]]) -> Result<()> {
     if wrenches.len() != tree.len() {
         return Err(wrong_count(tree, wrenches.len()));
     }

@@ -3,13 +3,14 @@
 mod distal_parts;
 mod exclusion;
 mod force_torque_sensor;
-mod lagged_torque;
 mod load_compensator;
 mod sensor_tree;
+mod wrench_observer;
 
 pub use exclusion::sensor_torque;
 pub use force_torque_sensor::{Convention, ForceTorqueSensor};
-pub(crate) use lagged_torque::is_known;
-pub use lagged_torque::LaggedTorques;
+pub(crate) use load_compensator::check_readings;
 pub use load_compensator::LoadCompensator;
 pub use sensor_tree::SensorTree;
+pub(crate) use wrench_observer::is_known;
+pub use wrench_observer::WrenchObserver;

@@ -1,4 +1,4 @@
-"""The arm at the moment of a hit, with the true and the estimated force."""
+"""The robot at the moment of a hit, with the true and the estimated force."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _ELEVATION = 20.0  # [deg]
 _SAMPLES = 40
 _LENGTH = 0.0045  # of a force [m/N]
 
-ARM_LEGEND = (
+ROBOT_LEGEND = (
     Line2D([], [], color=TRUTH, lw=2.0, marker="o", ms=5, label="true force and point"),
     Line2D([], [], color=ESTIMATE, lw=4.5, marker="o", ms=11, label="estimated"),
     Patch(color=NAMED, label="link named, right"),
@@ -29,8 +29,11 @@ ARM_LEGEND = (
 )
 
 
-def draw_arm(axes: Any, robot: Robot, hit: HitResult) -> None:
-    """Fills 3D axes: surfaces, the named link in colour, forces that end at their points."""
+def draw_robot(axes: Any, robot: Robot, hit: HitResult, *, narrow: bool = False) -> None:
+    """Fills 3D axes: surfaces, the named link in colour, forces that end at their points.
+
+    `narrow`: for a robot higher than wide, in axes that overlap with their neighbours.
+    """
     azimuth = _azimuth(robot, hit)
     towards = _direction(azimuth, _ELEVATION)
     faces, colours = [], []
@@ -54,20 +57,22 @@ def draw_arm(axes: Any, robot: Robot, hit: HitResult) -> None:
     _frame(axes, triangles.reshape(-1, 3), hit)
     axes.view_init(elev=_ELEVATION, azim=azimuth)
     axes.set_axis_off()
+    axes.patch.set_visible(False)
     title = {"transform": axes.transAxes, "ha": "center", "va": "top"}
-    axes.text2D(
-        0.5, 1.09, f"Hit {hit.number}: {hit.link}, {hit.force:.0f} N", weight="bold", fontsize=12, **title
-    )
-    axes.text2D(0.5, 1.01, _outcome(hit), color=TEXT, **title)
+    heights = (1.035, 0.98) if narrow else (1.09, 1.01)
+    name = f"Hit {hit.number}: {hit.link}, {hit.force:.0f} N"
+    axes.text2D(0.5, heights[0], name, weight="bold", fontsize=12, **title)
+    outcome = ("\n" if narrow else ", ").join(_outcome(hit))
+    axes.text2D(0.5, heights[1], outcome, color=TEXT, **title)
 
 
-def _outcome(hit: HitResult) -> str:
+def _outcome(hit: HitResult) -> tuple[str, ...]:
     if hit.named is None:
-        return "not felt"
+        return ("not felt",)
     name = "link named" if hit.link_right else f"named {hit.named}"
     if hit.point_error is None or hit.force_error is None:
-        return f"{name}, point open"
-    return f"{name}, point {1e3 * hit.point_error:.1f} mm off, force {100 * hit.force_error:.1f} % off"
+        return name, "point open"
+    return name, f"point {1e3 * hit.point_error:.1f} mm off, force {100 * hit.force_error:.1f} % off"
 
 
 def _azimuth(robot: Robot, hit: HitResult) -> float:

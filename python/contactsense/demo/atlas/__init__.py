@@ -1,0 +1,1 @@
+"""The demo's humanoid: it stands on the ground and is pushed."""

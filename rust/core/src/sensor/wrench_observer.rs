@@ -1,0 +1,194 @@
+//! The external wrench that each sensor sees, observed like the external torque: without an acceleration.
+//!
+//! What is behind a sensor has a momentum `h` about a fixed point, and `dh/dt = W_gravity + W_external - W_load`, with
+//! the wrench `W_load` that it puts on the sensor. Eqs. 13-19 of Vorndamme 2017 find `dh/dt` from the acceleration that
+//! the momentum observer gives. That one is late by the observer's low-pass, and so is what is compensated with it: a
+//! contact behind one sensor shows for some milliseconds in all others, on light parts that carry much (a foot on the
+//! ground) nearly in full. Here `h` itself is observed, as by eqs. 4-6: the wrench of each step is exact in the mean,
+//! and goes through the same low-pass as the external torque, so that the two are of one age.
+
+use std::sync::Arc;
+
+use nalgebra::{Vector3, Vector6};
+
+use super::distal_parts::{distal_parts, DistalPart};
+use super::exclusion::sensor_torque;
+use super::sensor_tree::SensorTree;
+use crate::robot::motion::{split, stack};
+use crate::robot::{Kinematics, Robot};
+
+/// Momentum or wrench, about a point that rests in the world.
+type Spatial = Vector6<f64>;
+
+/// Observes the external wrenches of a robot's sensors at equal time steps.
+#[derive(Debug, Clone)]
+pub struct WrenchObserver {
+    robot: Arc<Robot>,
+    parts: Vec<DistalPart>,
+    dt: f64,
+    /// `exp(-gain dt)` per velocity variable.
+    decay: Vec<f64>,
+    /// The same of the wrenches: the slowest one's.
+    wrench_decay: f64,
+    /// The fixed point: where the first step's reference origin was, in the world.
+    reference: Option<Vector3<f64>>,
+    before: Kinematics,
+    momentum: Vec<Spatial>,
+    momentum_before: Vec<Spatial>,
+    /// Gravity's wrench less the load.
+    known_rate: Vec<Spatial>,
+    known_rate_before: Vec<Spatial>,
+    had_reading: Vec<bool>,
+    external: Vec<Vector6<f64>>,
+    lagged: Vec<Vec<f64>>,
+    torque: Vec<f64>,
+    usable: Vec<bool>,
+}
+
+impl WrenchObserver {
+    /// For the sensors of a tree, the momentum observer's gain `(nv,)` [1/s] and its time step [s].
+    pub fn new(robot: Arc<Robot>, tree: &SensorTree, gain: &[f64], dt: f64) -> Self {
+        let zeros = vec![Spatial::zeros(); tree.len()];
+        let decay: Vec<f64> = gain.iter().map(|gain| (-gain * dt).exp()).collect();
+        Self {
+            parts: distal_parts(&robot, tree),
+            dt,
+            wrench_decay: decay.iter().copied().fold(0.0, f64::max),
+            reference: None,
+            before: Kinematics::new(&robot),
+            momentum: zeros.clone(),
+            momentum_before: zeros.clone(),
+            known_rate: zeros.clone(),
+            known_rate_before: zeros.clone(),
+            had_reading: vec![false; tree.len()],
+            external: zeros,
+            lagged: vec![vec![0.0; gain.len()]; tree.len()],
+            torque: vec![0.0; gain.len()],
+            usable: vec![true; tree.len()],
+            decay,
+            robot,
+        }
+    }
+
+    /// One control tick, with poses and velocities of now and checked readings; one with a NaN leaves its sensor out.
+    ///
+    /// The first call sets the initial momentum and gives zeros. A sensor that comes back is left out for one more tick.
+    pub fn update(&mut self, kinematics: &Kinematics, tree: &SensorTree, readings: &[[f64; 6]]) {
+        let first = self.reference.is_none();
+        let shift = kinematics.origin - *self.reference.get_or_insert(kinematics.origin);
+        std::mem::swap(&mut self.momentum, &mut self.momentum_before);
+        std::mem::swap(&mut self.known_rate, &mut self.known_rate_before);
+        self.pass(kinematics, tree, &shift);
+        for (sensor, reading) in readings.iter().enumerate() {
+            let has_reading = !reading.iter().any(|x| x.is_nan());
+            self.usable[sensor] = has_reading && (first || self.had_reading[sensor]);
+            if has_reading {
+                self.known_rate[sensor] -= load(kinematics, tree, sensor, reading, &shift);
+            }
+            if !self.usable[sensor] {
+                self.external[sensor] = Vector6::repeat(f64::NAN);
+            } else if !first {
+                self.observe(kinematics, tree, sensor);
+            }
+            self.had_reading[sensor] = has_reading;
+        }
+        self.before.origin = kinematics.origin;
+        self.before.bodies.copy_from_slice(&kinematics.bodies);
+    }
+
+    /// Momentum behind each sensor and gravity's wrench on it, summed from sensor to sensor (Algorithm 1).
+    fn pass(&mut self, kinematics: &Kinematics, tree: &SensorTree, shift: &Vector3<f64>) {
+        self.momentum.fill(Spatial::zeros());
+        self.known_rate.fill(Spatial::zeros());
+        for part in &self.parts {
+            let state = &kinematics.bodies[part.body];
+            let at = state.position + shift;
+            let velocity = state.velocity_at(&state.position);
+            let first_moment = state.rotation * part.moment;
+            let linear = velocity * part.mass + state.angular.cross(&first_moment);
+            let spin = state.rotation * (part.rotational * state.rotation.tr_mul(&state.angular));
+            let angular = spin + first_moment.cross(&velocity) + at.cross(&linear);
+            self.momentum[part.sensor] += stack(&linear, &angular);
+            let weight = (first_moment + at * part.mass).cross(&self.robot.gravity);
+            self.known_rate[part.sensor] += stack(&(self.robot.gravity * part.mass), &weight);
+        }
+        for &sensor in tree.distal_first() {
+            if let Some(parent) = tree.fixed_parent(sensor) {
+                let (momentum, rate) = (self.momentum[sensor], self.known_rate[sensor]);
+                self.momentum[parent] += momentum;
+                self.known_rate[parent] += rate;
+            }
+        }
+    }
+
+    /// The mean external wrench of the step since the last tick, and its low-passes.
+    fn observe(&mut self, kinematics: &Kinematics, tree: &SensorTree, sensor: usize) {
+        let rate = (self.momentum[sensor] - self.momentum_before[sensor]) / self.dt;
+        let mean = rate - (self.known_rate[sensor] + self.known_rate_before[sensor]) * 0.5;
+        let Some(reference) = self.reference else { return };
+        let about = |state: &Kinematics| {
+            let (force, moment) = split(&mean);
+            let arm = tree.position(state, sensor) + (state.origin - reference);
+            stack(&force, &(moment - arm.cross(&force)))
+        };
+        let now = about(kinematics);
+        let external = &mut self.external[sensor];
+        // After a gap the low-pass starts anew.
+        let fresh = !is_known(external);
+        *external = if fresh { now } else { now + (*external - now) * self.wrench_decay };
+        let lagged = &mut self.lagged[sensor];
+        sensor_torque(&self.robot, kinematics, tree, sensor, &now, &mut self.torque);
+        for ((lagged, torque), decay) in lagged.iter_mut().zip(&self.torque).zip(&self.decay) {
+            *lagged = if fresh { 0.5 * torque } else { decay * *lagged + (1.0 - decay) * 0.5 * torque };
+        }
+        sensor_torque(&self.robot, &self.before, tree, sensor, &about(&self.before), &mut self.torque);
+        for ((lagged, torque), decay) in lagged.iter_mut().zip(&self.torque).zip(&self.decay) {
+            *lagged += if fresh { 0.5 * torque } else { (1.0 - decay) * 0.5 * torque };
+        }
+    }
+
+    /// External wrenches: (force, moment) on the robot at each sensor's origin, world axes, behind the low-pass of the
+    /// smallest gain [N, Nm]; NaN where a sensor is left out.
+    pub fn external(&self) -> &[Vector6<f64>] {
+        &self.external
+    }
+
+    /// A sensor's `J(S)^T F_ext,S` as the momentum observer knows it by now `(nv,)`.
+    pub fn lagged_torque(&self, sensor: usize) -> &[f64] {
+        &self.lagged[sensor]
+    }
+
+    /// Which sensors are in use.
+    pub fn usable(&self) -> &[bool] {
+        &self.usable
+    }
+
+    /// Forgets all ticks.
+    pub fn reset(&mut self) {
+        self.reference = None;
+        self.had_reading.fill(false);
+        self.external.fill(Vector6::zeros());
+        self.lagged.iter_mut().for_each(|row| row.fill(0.0));
+        self.usable.fill(true);
+    }
+}
+
+/// What a reading says the sensor carries: world axes, about the fixed point.
+fn load(
+    kinematics: &Kinematics,
+    tree: &SensorTree,
+    sensor: usize,
+    reading: &[f64; 6],
+    shift: &Vector3<f64>,
+) -> Spatial {
+    let turn = tree.rotation(kinematics, sensor) * tree.sensors()[sensor].convention.sign();
+    let [fx, fy, fz, mx, my, mz] = *reading;
+    let force = turn * Vector3::new(fx, fy, fz);
+    let at = tree.position(kinematics, sensor) + shift;
+    stack(&force, &(turn * Vector3::new(mx, my, mz) + at.cross(&force)))
+}
+
+/// Whether a sensor gave a reading.
+pub(crate) fn is_known(wrench: &Vector6<f64>) -> bool {
+    !wrench[0].is_nan()
+}
