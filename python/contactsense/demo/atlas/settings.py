@@ -64,6 +64,7 @@ class StandingSettings:
     observer_gain: float  # [1/s]
     torque_threshold: FloatArray  # (nv,) [N, Nm]
     wrench_threshold: FloatArray  # (sensors, 6) [N, Nm]
+    wrench_gain: float | None  # [1/s]
 
 
 def choose(
@@ -101,6 +102,7 @@ def choose(
             np.repeat([FORCE_FLOOR, SENSOR_FLOOR], 3),
             scale * np.sqrt(_wrench_variance(robot, q, sensor_noise)),
         ),
+        None if sensor_noise.none else gain,
     )
 
 

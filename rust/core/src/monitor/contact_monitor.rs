@@ -21,6 +21,8 @@ pub struct MonitorOptions {
     pub dt: f64,
     /// Per velocity variable, or one for all [1/s].
     pub observer_gain: Vec<f64>,
+    /// Of a low-pass on the sensors' external wrenches [1/s]; none: they are given without delay.
+    pub wrench_gain: Option<f64>,
     /// Thresholds, number of contacts, pushing, sensors.
     pub isolation: IsolatorOptions,
     /// A signal stays on for this time after it was last over its threshold [s].
@@ -38,6 +40,7 @@ impl MonitorOptions {
         Self {
             dt,
             observer_gain: vec![50.0],
+            wrench_gain: None,
             isolation: IsolatorOptions {
                 torque_threshold: vec![0.5],
                 wrench_threshold: vec![2.0],
@@ -116,8 +119,14 @@ impl ContactMonitor {
             &options.isolation.wrench_threshold,
             options.hold_time,
         )?;
-        let sensing =
-            Sensing::new(&robot, tree, &options.isolation.wanted_contacts, observer.gain(), options.dt)?;
+        let sensing = Sensing::new(
+            &robot,
+            tree,
+            &options.isolation.wanted_contacts,
+            observer.gain(),
+            options.wrench_gain,
+            options.dt,
+        )?;
         Ok(Self {
             observer,
             detector,

@@ -4,8 +4,9 @@
 //! the wrench `W_load` that it puts on the sensor. Eqs. 13-19 of Vorndamme 2017 find `dh/dt` from the acceleration that
 //! the momentum observer gives. That one is late by the observer's low-pass, and so is what is compensated with it: a
 //! contact behind one sensor shows for some milliseconds in all others, on light parts that carry much (a foot on the
-//! ground) nearly in full. Here `h` itself is observed, as by eqs. 4-6: the wrench of each step is exact in the mean,
-//! and goes through the same low-pass as the external torque, so that the two are of one age.
+//! ground) nearly in full. Here `h` itself is observed, as by eqs. 4-6: the wrench of each step is exact in the mean. Its
+//! torque goes through the same low-pass as the external torque, so that the two are of one age; the wrench itself is
+//! given without delay, or behind a low-pass of its own where readings and velocities are noisy.
 
 use std::sync::Arc;
 
@@ -14,6 +15,7 @@ use nalgebra::{Vector3, Vector6};
 use super::distal_parts::{distal_parts, DistalPart};
 use super::exclusion::sensor_torque;
 use super::sensor_tree::SensorTree;
+use crate::error::{Error, Result};
 use crate::robot::motion::{split, stack};
 use crate::robot::{Kinematics, Robot};
 
@@ -28,7 +30,7 @@ pub struct WrenchObserver {
     dt: f64,
     /// `exp(-gain dt)` per velocity variable.
     decay: Vec<f64>,
-    /// The same of the wrenches: the slowest one's.
+    /// The same of the wrenches; zero without a low-pass.
     wrench_decay: f64,
     /// The fixed point: where the first step's reference origin was, in the world.
     reference: Option<Vector3<f64>>,
@@ -46,14 +48,29 @@ pub struct WrenchObserver {
 }
 
 impl WrenchObserver {
-    /// For the sensors of a tree, the momentum observer's gain `(nv,)` [1/s] and its time step [s].
-    pub fn new(robot: Arc<Robot>, tree: &SensorTree, gain: &[f64], dt: f64) -> Self {
+    /// For the sensors of a tree, the momentum observer's gain `(nv,)` [1/s] and its time step [s]; `wrench_gain` [1/s]
+    /// of a low-pass on the wrenches, if any.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where `wrench_gain` is not positive and finite.
+    pub fn new(
+        robot: Arc<Robot>,
+        tree: &SensorTree,
+        gain: &[f64],
+        wrench_gain: Option<f64>,
+        dt: f64,
+    ) -> Result<Self> {
+        if let Some(gain) = wrench_gain.filter(|gain| !(gain.is_finite() && *gain > 0.0)) {
+            return Err(Error::Input(format!(
+                "wrench_gain: must be positive and finite [1/s], or none, not {gain}"
+            )));
+        }
         let zeros = vec![Spatial::zeros(); tree.len()];
         let decay: Vec<f64> = gain.iter().map(|gain| (-gain * dt).exp()).collect();
-        Self {
+        Ok(Self {
             parts: distal_parts(&robot, tree),
             dt,
-            wrench_decay: decay.iter().copied().fold(0.0, f64::max),
+            wrench_decay: wrench_gain.map_or(0.0, |gain| (-gain * dt).exp()),
             reference: None,
             before: Kinematics::new(&robot),
             momentum: zeros.clone(),
@@ -67,7 +84,7 @@ impl WrenchObserver {
             usable: vec![true; tree.len()],
             decay,
             robot,
-        }
+        })
     }
 
     /// One control tick, with poses and velocities of now and checked readings; one with a NaN leaves its sensor out.
@@ -147,8 +164,8 @@ impl WrenchObserver {
         }
     }
 
-    /// External wrenches: (force, moment) on the robot at each sensor's origin, world axes, behind the low-pass of the
-    /// smallest gain [N, Nm]; NaN where a sensor is left out.
+    /// External wrenches: (force, moment) on the robot at each sensor's origin, world axes [N, Nm], the mean since the
+    /// last tick; NaN where a sensor is left out.
     pub fn external(&self) -> &[Vector6<f64>] {
         &self.external
     }
@@ -190,5 +207,5 @@ fn load(
 
 /// Whether a sensor gave a reading.
 pub(crate) fn is_known(wrench: &Vector6<f64>) -> bool {
-    !wrench[0].is_nan()
+    !wrench.iter().any(|x| x.is_nan())
 }
