@@ -13,9 +13,9 @@ use crate::robot::Robot;
 use crate::surface::SurfacePoint;
 
 /// Pairs of samples, and how many samples a body has.
-const PAIRS: usize = 1600;
-const LEAST: f64 = 16.0;
-const MOST: f64 = 100.0;
+const PAIRS: usize = 4900;
+const LEAST: f64 = 28.0;
+const MOST: f64 = 180.0;
 /// Starts that are followed to an exact solution.
 pub(super) const STARTS: usize = 8;
 /// A pair of points stands for its neighbours: the square of how far around, in areas per sample.
@@ -30,6 +30,8 @@ const SIZE: i32 = 2;
 const UNLIKELY: f64 = 12.0;
 /// Exact solutions are sought from likely pairs within about this distance of the mean [m].
 const REACH: f64 = 0.05;
+/// Pairs whose missing moment points so far along their arm are not looked at [variances].
+const WORTH: f64 = 2.0;
 const SEED: u64 = 1;
 
 /// A sampled contact, from the kinematics' origin in world axes.
@@ -180,6 +182,12 @@ impl SurfaceSearch {
                 // Moments about the first point: arm x f = missing.
                 let arm = second.point - first.point;
                 let square = arm.norm_squared();
+                // No force turns about its own arm; forces are of the size that the missing moment asks for, or more.
+                let along = arm.dot(&first.vector);
+                let size = (first.square / square).max(0.5 * total.norm_squared());
+                if along * along > WORTH * spacing * size * square {
+                    continue;
+                }
                 let matrix = second.matrix + Matrix3::from_diagonal_element(square) - arm * arm.transpose();
                 let rhs = second.vector - arm.cross(&first.vector);
                 let Some(inverse) = matrix.try_inverse() else { continue };
