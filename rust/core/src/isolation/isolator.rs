@@ -246,7 +246,11 @@ impl ContactIsolator {
                 self.isolate_single(kinematics, tip);
             }
             tip => {
-                if exact || self.solve_roughly(kinematics, None) {
+                if exact || self.solve_roughly(kinematics, None, false) {
+                    self.identify(kinematics, None);
+                    self.report_several(kinematics);
+                } else if tip.is_none() && self.isolate_partly(kinematics) {
+                } else if self.solve_roughly(kinematics, None, true) {
                     self.identify(kinematics, None);
                     self.report_several(kinematics);
                 } else if let Some(tip) = tip {
@@ -256,6 +260,22 @@ impl ContactIsolator {
                 }
             }
         }
+    }
+
+    /// The contacts that the joints behind all others determine; links are named for the rest. False if there are none.
+    fn isolate_partly(&mut self, kinematics: &Kinematics) -> bool {
+        self.set_rows(kinematics, None, true);
+        let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
+        self.several.solve_exactly(scene, &mut self.rows);
+        self.several.solutions.clear();
+        if self.several.found.is_empty() {
+            return false;
+        }
+        self.report_found_alone(kinematics);
+        let Self { robot, tips, region, rows, threshold, .. } = self;
+        tips.find(robot, |k| region.feels[k] && rows.torque[k].abs() > threshold[k]);
+        self.name_links(kinematics);
+        true
     }
 
     /// The bodies at the ends of what the joints feel, and their number; `share` of what sensors have explained
@@ -271,14 +291,11 @@ impl ContactIsolator {
         self.rows.root = root.map(|root| if widened { *root } else { root.narrow() });
     }
 
-    /// Several forces that explain the torques within the thresholds, or else within wider tolerances; `tips` are
-    /// found.
-    fn solve_roughly(&mut self, kinematics: &Kinematics, root: Option<&Root>) -> bool {
-        [false, true].into_iter().any(|widened| {
-            self.set_rows(kinematics, root, widened);
-            let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
-            self.several.solve_roughly(scene, &self.rows, self.tips.tips(), widened)
-        })
+    /// Several forces that explain the torques within the thresholds, or within `widened` tolerances; tips are found.
+    fn solve_roughly(&mut self, kinematics: &Kinematics, root: Option<&Root>, widened: bool) -> bool {
+        self.set_rows(kinematics, root, widened);
+        let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
+        self.several.solve_roughly(scene, &self.rows, self.tips.tips(), widened)
     }
 
     /// Whether one force explains the torques within their tolerances.
@@ -300,7 +317,8 @@ impl ContactIsolator {
             return false;
         }
         self.find_tips(LEFT_OVER);
-        let solved = exact || self.solve_roughly(kinematics, Some(root));
+        let roughly = |isolator: &mut Self, widened| isolator.solve_roughly(kinematics, Some(root), widened);
+        let solved = exact || roughly(self, false) || roughly(self, true);
         if solved {
             self.identify(kinematics, Some(root));
         }

@@ -12,13 +12,18 @@ use crate::robot::Kinematics;
 const SAME_POINT: f64 = 0.005;
 
 impl ContactIsolator {
-    /// Contacts that were found together, farthest from the base first.
-    pub(super) fn report_several(&mut self, kinematics: &Kinematics) {
-        let first = self.isolation.contacts.len();
+    /// Contacts that were found one by one.
+    pub(super) fn report_found_alone(&mut self, kinematics: &Kinematics) {
         for index in 0..self.several.found.len() {
             let found = self.several.found[index].clone();
             self.report_found(kinematics, &found, true);
         }
+    }
+
+    /// Contacts that were found together, farthest from the base first.
+    pub(super) fn report_several(&mut self, kinematics: &Kinematics) {
+        let first = self.isolation.contacts.len();
+        self.report_found_alone(kinematics);
         for side in [1, 0] {
             let Some(best) = self.several.solutions.first() else { break };
             let found = best.contacts[side].clone();
