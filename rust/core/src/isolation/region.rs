@@ -12,6 +12,8 @@ pub(super) struct Region {
     pub feels: Vec<bool>,
     /// By link.
     pub links: Vec<bool>,
+    /// All of the robot.
+    pub whole: bool,
     /// A wanted contact may act here that no sensor measures: nothing can be told of others.
     pub unknown: bool,
 }
@@ -22,12 +24,14 @@ impl Region {
             joints: vec![true; robot.body_count()],
             feels: vec![true; robot.nv()],
             links: vec![true; robot.links().len()],
+            whole: true,
             unknown: false,
         }
     }
 
     /// What loads a sensor directly; none: what no sensor in use carries.
     fn set(&mut self, robot: &Robot, tree: &SensorTree, sensor: Option<usize>) {
+        self.whole = tree.is_empty();
         for body in WORLD + 1..robot.body_count() {
             self.joints[body] = in_use(tree, before_joint(robot, tree, body)) == sensor;
             self.feels[robot.velocity_range(body)].fill(self.joints[body]);

@@ -8,6 +8,8 @@ use super::wrench::{for_each_column, WrenchEstimate};
 use crate::robot::motion::stack;
 use crate::robot::Kinematics;
 
+/// One of several contacts is located if its point's standard deviation is less [m].
+const SHARP: f64 = 0.01;
 /// Solutions whose points are nearer than this agree [m].
 const SAME_POINT: f64 = 0.005;
 
@@ -37,6 +39,10 @@ impl ContactIsolator {
             self.report_found(kinematics, &found, determined);
         }
         self.isolation.rank_deficit += self.several.rank_deficit;
+        // Several forces share the redundant torques: what is not sharp may as well be the others' doing.
+        for contact in &mut self.isolation.contacts[first..] {
+            contact.located &= contact.point_std < SHARP;
+        }
         // Tolerances are wider than the thresholds; what contradicts those is not located.
         if self.several.contradicted || self.unexplained_share() > CONTRADICTION {
             self.isolation.contacts[first..].iter_mut().for_each(|contact| contact.located = false);

@@ -12,7 +12,7 @@ use super::pair::{estimate_pair, Open, PairEstimate};
 use super::result::Candidate;
 use super::rows::{TorqueRows, WrenchRows};
 use super::stacked::Stacked;
-use super::surface_search::{steepness, SurfaceSearch, STARTS};
+use super::surface_search::{steepness, SurfaceSearch, PAIRS, STARTS};
 use super::wrench::WrenchEstimate;
 use crate::detection::TipSearch;
 use crate::robot::{Robot, WORLD};
@@ -209,7 +209,9 @@ impl SeveralContacts {
             self.verified = pair.checks() > 0;
             self.open = pair.deficit > 2;
             if pair.deficit > 0 {
-                self.close(scene, &pair, limit);
+                // Between sensors the bodies are fewer.
+                let pairs = if scene.region.whole { PAIRS } else { PAIRS / 3 };
+                self.close(scene, &pair, pairs, limit);
                 return !self.solutions.is_empty();
             }
             let wrenches = pair.wrenches(&[0.0; 6]);
@@ -233,7 +235,7 @@ impl SeveralContacts {
     }
 
     /// Closes a rank deficit by what is known of contacts.
-    fn close(&mut self, scene: Scene, pair: &PairEstimate, limit: f64) {
+    fn close(&mut self, scene: Scene, pair: &PairEstimate, pairs: usize, limit: f64) {
         if pair.deficit <= 2 {
             let (closed, count) = close(pair);
             for open in &closed[..count] {
@@ -244,7 +246,7 @@ impl SeveralContacts {
         if exceeds(pair.unexplained_share(), limit) {
             return;
         }
-        self.search.search(scene, pair);
+        self.search.search(scene, pair, pairs);
         for rank in 0..STARTS {
             let Some((places, start)) = self.search.start(scene, pair, rank) else { break };
             let exact = close_near(pair, start).is_some_and(|open| self.try_open(scene, pair, &open, limit));

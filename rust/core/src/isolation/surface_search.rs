@@ -13,7 +13,7 @@ use crate::robot::Robot;
 use crate::surface::SurfacePoint;
 
 /// Pairs of samples, and how many samples a body has.
-const PAIRS: usize = 4900;
+pub(super) const PAIRS: usize = 4900;
 const LEAST: f64 = 28.0;
 const MOST: f64 = 180.0;
 /// Starts that are followed to an exact solution.
@@ -83,10 +83,10 @@ impl SurfaceSearch {
     }
 
     /// Finds the likeliest pairs of places, to be asked for by [`SurfaceSearch::start`].
-    pub fn search(&mut self, scene: Scene, pair: &PairEstimate) {
+    pub fn search(&mut self, scene: Scene, pair: &PairEstimate, pairs: usize) {
         let areas = pair.bodies.map(|body| self.area(scene, body));
         let share = (areas[0] / areas[1]).sqrt().clamp(LEAST / MOST, MOST / LEAST);
-        let mean = (PAIRS as f64).sqrt();
+        let mean = (pairs.min(PAIRS) as f64).sqrt();
         let counts = [mean * share.sqrt(), mean / share.sqrt()];
         let mut spacing = 0.0;
         for side in 0..2 {
