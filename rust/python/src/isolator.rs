@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use contactsense::isolation::{Candidate, Contact, ContactIsolator, Isolation, IsolatorOptions};
 use contactsense::robot::Robot;
+use contactsense::sensor::JOINT_TORQUES;
 use nalgebra::Vector6;
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -104,7 +105,7 @@ impl PyContact {
     /// What saw it: "joint torques", or the sensor's name.
     #[getter]
     fn source(&self) -> &str {
-        self.contact.source.map_or("joint torques", |sensor| &self.sensors[sensor])
+        self.contact.source.map_or(JOINT_TORQUES, |sensor| &self.sensors[sensor])
     }
 
     /// False: the link is known, the point is not.

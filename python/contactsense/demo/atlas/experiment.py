@@ -65,7 +65,6 @@ def run_experiment(
         observer_gain=settings.observer_gain,
         torque_threshold=settings.torque_threshold,
         wrench_threshold=settings.wrench_threshold,
-        wrench_gain=settings.wrench_gain,
     )
     atlas.reset(q)
     for tick in range(round(_SETTLING / DT)):

@@ -64,7 +64,6 @@ class StandingSettings:
     observer_gain: float  # [1/s]
     torque_threshold: FloatArray  # (nv,) [N, Nm]
     wrench_threshold: FloatArray  # (sensors, 6) [N, Nm]
-    wrench_gain: float | None  # [1/s]
 
 
 def choose(
@@ -100,9 +99,9 @@ def choose(
         np.maximum(floor, scale * np.sqrt(variance)),
         np.maximum(
             np.repeat([FORCE_FLOOR, SENSOR_FLOOR], 3),
-            scale * np.sqrt(_wrench_variance(robot, q, sensor_noise)),
+            # A wrench is the mean of two readings.
+            DEVIATIONS * np.sqrt(0.5 * _wrench_variance(robot, q, sensor_noise)),
         ),
-        None if sensor_noise.none else gain,
     )
 
 

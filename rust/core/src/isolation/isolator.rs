@@ -76,6 +76,8 @@ pub struct ContactIsolator {
     /// What each joint feels of contacts in its region, and the size of what sensors have explained of it.
     pub(super) residual: Vec<f64>,
     pub(super) measured: Vec<f64>,
+    /// The thresholds, with those of the sensors that were subtracted.
+    pub(super) limit: Vec<f64>,
     pub(super) tips: TipSearch,
     pub(super) bodies: BodySet,
     pub(super) line: LineCast,
@@ -110,7 +112,6 @@ impl ContactIsolator {
             ..Isolation::default()
         };
         Ok(Self {
-            threshold,
             wrench_threshold,
             max_contacts,
             pushing: options.pushing,
@@ -121,6 +122,8 @@ impl ContactIsolator {
             sensed: vec![0.0; nv],
             residual: vec![0.0; nv],
             measured: vec![0.0; nv],
+            limit: threshold.clone(),
+            threshold,
             tips: TipSearch::new(&robot),
             bodies: BodySet::new(&robot),
             line: LineCast::new(),
@@ -272,8 +275,8 @@ impl ContactIsolator {
             return false;
         }
         self.report_found_alone(kinematics);
-        let Self { robot, tips, region, rows, threshold, .. } = self;
-        tips.find(robot, |k| region.feels[k] && rows.torque[k].abs() > threshold[k]);
+        let Self { robot, tips, region, rows, limit, .. } = self;
+        tips.find(robot, |k| region.feels[k] && rows.torque[k].abs() > limit[k]);
         self.name_links(kinematics);
         true
     }
@@ -281,13 +284,13 @@ impl ContactIsolator {
     /// The bodies at the ends of what the joints feel, and their number; `share` of what sensors have explained
     /// already is no torque.
     fn find_tips(&mut self, share: f64) -> usize {
-        let Self { robot, tips, region, residual, threshold, measured, .. } = self;
-        let over = |k: usize| residual[k].abs() > threshold[k].max(share * measured[k]);
+        let Self { robot, tips, region, residual, limit, measured, .. } = self;
+        let over = |k: usize| residual[k].abs() > limit[k].max(share * measured[k]);
         tips.find(robot, |k| region.feels[k] && over(k)).len()
     }
 
     fn set_rows(&mut self, kinematics: &Kinematics, root: Option<&Root>, widened: bool) {
-        self.rows.set(&self.robot, kinematics, &self.residual, &self.measured, &self.threshold, widened);
+        self.rows.set(&self.robot, kinematics, &self.residual, &self.measured, &self.limit, widened);
         self.rows.root = root.map(|root| if widened { *root } else { root.narrow() });
     }
 

@@ -54,7 +54,7 @@ impl ContactIsolator {
         let (mut squares, mut count) = (0.0, 0_u32);
         for body in (1..self.robot.body_count()).filter(|body| self.region.joints[*body]) {
             for k in self.robot.velocity_range(body) {
-                squares += (self.unexplained[k] / self.threshold[k]).powi(2);
+                squares += (self.unexplained[k] / self.limit[k]).powi(2);
                 count += 1;
             }
         }
@@ -104,8 +104,8 @@ impl ContactIsolator {
         let body = robot.links[hit.link].body;
         let at = hit.point - kinematics.origin;
         // A full-rank wrench leaves the force regular; keep the wrench's force should rounding say otherwise.
-        let force = identify_force(robot, kinematics, body, &at, &self.residual, &self.threshold)
-            .unwrap_or(wrench.force);
+        let force =
+            identify_force(robot, kinematics, body, &at, &self.residual, &self.limit).unwrap_or(wrench.force);
         explain_force(robot, kinematics, &self.region, body, &at, &force, &mut self.unexplained);
         let consistent = wrench.misfit() <= CONTRADICTION && self.unexplained_share() <= CONTRADICTION;
         self.near.clone_from(&self.isolation.link_candidates);

@@ -30,7 +30,9 @@ impl ContactIsolator {
     ) {
         self.residual.copy_from_slice(torque);
         self.measured.fill(0.0);
-        let Self { robot, regions, residual, measured, active, sensed, .. } = self;
+        let Self { robot, regions, residual, measured, limit, active, sensed, wrench_threshold, .. } = self;
+        let power = if wrenches.is_empty() { 1 } else { 2 };
+        limit.iter_mut().zip(&self.threshold).for_each(|(limit, threshold)| *limit = threshold.powi(power));
         active.clear();
         active.extend(wrenches.iter().map(is_known));
         regions.set_active(robot, active);
@@ -51,8 +53,12 @@ impl ContactIsolator {
                     // Components err one by one, also where their sum is small.
                     let axis = jacobian_column(robot, kinematics, joint, column, &position);
                     measured[k] += axis.component_mul(wrench).norm_squared();
+                    limit[k] += axis.component_mul(&wrench_threshold[sensor]).norm_squared();
                 }
             }
+        }
+        if !wrenches.is_empty() {
+            limit.iter_mut().for_each(|limit| *limit = limit.sqrt());
         }
         for (measured, torque) in measured.iter_mut().zip(torque).filter(|(measured, _)| **measured > 0.0) {
             *measured = (*measured + torque * torque).sqrt();
@@ -71,8 +77,8 @@ impl ContactIsolator {
             return;
         }
         let (root, spread) = self.left_over(kinematics, sensor, wrenches);
-        let limits = self.wrench_threshold[sensor];
-        let over = |share: f64| (0..6).any(|i| root.value[i].abs() > limits[i].max(share * spread[i]));
+        let over =
+            |share: f64| (0..6).any(|i| root.value[i].abs() > root.threshold[i].max(share * spread[i]));
         if !over(0.0) {
             return;
         }
@@ -95,23 +101,18 @@ impl ContactIsolator {
         let position = tree.position(kinematics, sensor);
         let mut value = wrenches[sensor];
         let mut squares = value.component_mul(&value);
+        let own = &self.wrench_threshold[sensor];
+        let mut limits = own.component_mul(own);
         for other in
             (0..tree.len()).filter(|other| self.active[*other] && tree.parent(*other) == Some(sensor))
         {
             let (force, moment) = split(&wrenches[other]);
             let arm = tree.position(kinematics, other) - position;
             value -= stack(&force, &(moment + arm.cross(&force)));
-            let size = |vector: &Vector3<f64>| vector.component_mul(vector);
-            let (arms, forces) = (size(&arm), size(&force));
-            let turned = Vector3::new(
-                arms.y * forces.z + arms.z * forces.y,
-                arms.z * forces.x + arms.x * forces.z,
-                arms.x * forces.y + arms.y * forces.x,
-            );
-            squares += stack(&forces, &(size(&moment) + turned));
+            squares += moved_squares(&wrenches[other], &arm);
+            limits += moved_squares(&self.wrench_threshold[other], &arm);
         }
-        let spread = squares.map(f64::sqrt);
-        let limits = &self.wrench_threshold[sensor];
+        let (spread, limits) = (squares.map(f64::sqrt), limits.map(f64::sqrt));
         let axes = std::array::from_fn(|i| {
             let axis = Vector3::ith(i % 3, 1.0);
             if i < 3 {
@@ -121,7 +122,7 @@ impl ContactIsolator {
             }
         });
         let tolerance = std::array::from_fn(|i| limits[i].hypot(TORQUE_SHARE * spread[i]));
-        (Root { axes, value: value.into(), tolerance, threshold: (*limits).into() }, spread)
+        (Root { axes, value: value.into(), tolerance, threshold: limits.into() }, spread)
     }
 
     /// One force that explains the wrench, or several that explain it and the joints' torques; `certain`: the wrench
@@ -133,7 +134,7 @@ impl ContactIsolator {
             return;
         }
         let robot = &self.robot;
-        let felt = |k: usize| self.residual[k].abs() > self.threshold[k].max(LEFT_OVER * self.measured[k]);
+        let felt = |k: usize| self.residual[k].abs() > self.limit[k].max(LEFT_OVER * self.measured[k]);
         let tip = match self.tips.find(robot, |k| self.region.feels[k] && felt(k)) {
             [tip] => Some(*tip),
             _ => None,
@@ -180,7 +181,7 @@ impl ContactIsolator {
         let end = self.isolation.candidates.len();
         for allowed in [true, false] {
             match tip.filter(|_| allowed) {
-                Some(tip) => self.bodies.grow(scene, tip, wrench, &self.residual, &self.threshold),
+                Some(tip) => self.bodies.grow(scene, tip, wrench, &self.residual, &self.limit),
                 None => self.bodies.set_all(true),
             }
             self.isolation.candidates.truncate(end);
@@ -197,4 +198,16 @@ impl ContactIsolator {
         self.isolation.candidates.truncate(end);
         None
     }
+}
+
+/// Squares of what adds up to the components of a wrench that is moved by `arm`.
+fn moved_squares(wrench: &Vector6<f64>, arm: &Vector3<f64>) -> Vector6<f64> {
+    let (forces, moments) = split(&wrench.component_mul(wrench));
+    let arms = arm.component_mul(arm);
+    let turned = Vector3::new(
+        arms.y * forces.z + arms.z * forces.y,
+        arms.z * forces.x + arms.x * forces.z,
+        arms.x * forces.y + arms.y * forces.x,
+    );
+    stack(&forces, &(moments + turned))
 }

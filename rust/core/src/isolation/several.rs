@@ -41,7 +41,7 @@ pub(super) struct SeveralContacts {
     pub verified: bool,
     /// Whether the thresholds contradict the solution.
     pub contradicted: bool,
-    /// Whether more components are open than two forces on lines have conditions: the solutions are samples.
+    /// Whether nothing checks how the sum of two wrenches was divided: the solutions are as many as conditions allow.
     pub open: bool,
     pub(super) max_contacts: usize,
     tips: TipSearch,
@@ -207,7 +207,7 @@ impl SeveralContacts {
             let Some(pair) = estimate_pair(scene.robot, scene.region, rows, bodies) else { return false };
             self.rank_deficit = pair.deficit;
             self.verified = pair.checks() > 0;
-            self.open = pair.deficit > 2;
+            self.open = pair.deficit > 1;
             if pair.deficit > 0 {
                 // Between sensors the bodies are fewer.
                 let pairs = if scene.region.whole { PAIRS } else { PAIRS / 3 };

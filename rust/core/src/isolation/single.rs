@@ -21,7 +21,7 @@ impl ContactIsolator {
 
     /// The wrench on a body that explains the torques before it best.
     pub(super) fn estimate(&self, kinematics: &Kinematics, body: usize) -> WrenchEstimate {
-        estimate_wrench(&self.robot, kinematics, body, &self.residual, &self.threshold)
+        estimate_wrench(&self.robot, kinematics, body, &self.residual, &self.limit)
     }
 
     /// A force on one branch: steps 1 to 4, repeated with the link that was hit.
@@ -50,7 +50,7 @@ impl ContactIsolator {
                 tip,
                 &wrench,
                 &self.residual,
-                &self.threshold,
+                &self.limit,
             );
             let hit = self.cast(kinematics, &wrench).or_else(|| {
                 self.bodies.grow_all(&self.robot, &self.region, tip);
@@ -92,7 +92,7 @@ impl ContactIsolator {
                 body,
                 &wrench,
                 &self.residual,
-                &self.threshold,
+                &self.limit,
             );
             if let Some(hit) = self.cast(kinematics, &wrench) {
                 if self.robot.links[hit.link].body == body {

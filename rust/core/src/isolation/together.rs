@@ -6,19 +6,21 @@ use super::several::SeveralContacts;
 
 /// Rounds until the contact links stand still; ten, as in Vorndamme 2017.
 const ROUNDS: usize = 10;
+/// Contacts that are solved for together: more would take too long.
+const MOST: usize = 6;
 
 impl SeveralContacts {
     /// Forces on all of `bodies`, or on one more before them, that explain the torques but for `limit` and are
     /// determined by them.
     pub(super) fn solve_together(&mut self, scene: Scene, rows: &TorqueRows, limit: f64) -> bool {
         let (found, tips) = (self.found.len(), self.bodies.len());
-        if tips < 2 || found + tips > self.max_contacts {
+        if !(2..=MOST).contains(&tips) || found + tips > self.max_contacts {
             return false;
         }
         if self.stack(scene, rows, limit).is_some() {
             return true;
         }
-        if found + tips == self.max_contacts {
+        if found + tips == self.max_contacts || tips == MOST {
             return false;
         }
         let mut best: Option<(f64, usize)> = None;

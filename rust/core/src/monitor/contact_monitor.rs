@@ -21,8 +21,9 @@ pub struct MonitorOptions {
     pub dt: f64,
     /// Per velocity variable, or one for all [1/s].
     pub observer_gain: Vec<f64>,
-    /// Of a low-pass on the sensors' external wrenches [1/s]; none: they are given without delay.
-    pub wrench_gain: Option<f64>,
+    /// Of the low-pass on the inertia that sensors' readings are freed of [1/s], infinite for no low-pass. If none, the
+    /// observer's smallest, and no low-pass where that is at least half the tick rate.
+    pub inertia_gain: Option<f64>,
     /// Thresholds, number of contacts, pushing, sensors.
     pub isolation: IsolatorOptions,
     /// A signal stays on for this time after it was last over its threshold [s].
@@ -40,7 +41,7 @@ impl MonitorOptions {
         Self {
             dt,
             observer_gain: vec![50.0],
-            wrench_gain: None,
+            inertia_gain: None,
             isolation: IsolatorOptions {
                 torque_threshold: vec![0.5],
                 wrench_threshold: vec![2.0],
@@ -109,7 +110,15 @@ impl ContactMonitor {
                 "bias_settle_time: must be positive and finite [s], or none, not {time}"
             )));
         }
-        let observer = MomentumObserver::new(robot.clone(), options.dt, &options.observer_gain)?;
+        let observer =
+            MomentumObserver::new(robot.clone(), options.dt, &options.observer_gain).map_err(|error| {
+                match error {
+                    Error::Input(text) if text.starts_with("gain") => {
+                        Error::Input(format!("observer_{text}"))
+                    }
+                    other => other,
+                }
+            })?;
         let tree = SensorTree::new(&robot, &options.isolation.sensors)?;
         let threshold = &options.isolation.torque_threshold;
         let detector = Detector::with_sensors(
@@ -124,7 +133,7 @@ impl ContactMonitor {
             tree,
             &options.isolation.wanted_contacts,
             observer.gain(),
-            options.wrench_gain,
+            options.inertia_gain,
             options.dt,
         )?;
         Ok(Self {

@@ -11,6 +11,6 @@ pub use exclusion::sensor_torque;
 pub use force_torque_sensor::{Convention, ForceTorqueSensor};
 pub(crate) use load_compensator::check_readings;
 pub use load_compensator::LoadCompensator;
-pub use sensor_tree::SensorTree;
+pub use sensor_tree::{SensorTree, JOINT_TORQUES};
 pub(crate) use wrench_observer::is_known;
 pub use wrench_observer::WrenchObserver;

@@ -7,6 +7,9 @@ use crate::error::{Error, Result};
 use crate::robot::{Kinematics, Robot, WORLD};
 use crate::spatial::Pose;
 
+/// What a contact's source is called that no sensor saw.
+pub const JOINT_TORQUES: &str = "joint torques";
+
 /// The sensors of one robot, in the order given, and the tree they form.
 #[derive(Debug, Clone)]
 pub struct SensorTree {
@@ -43,6 +46,9 @@ impl SensorTree {
         let mut mounts = Vec::with_capacity(sensors.len());
         for (index, sensor) in sensors.iter().enumerate() {
             let mount = mount(robot, sensor)?;
+            if sensor.name == JOINT_TORQUES {
+                return Err(Error::Input(format!("sensors: '{JOINT_TORQUES}' is no name for a sensor")));
+            }
             if sensors[..index].iter().any(|other| other.name == sensor.name) {
                 return Err(Error::Input(format!("sensors: two are named '{}'", sensor.name)));
             }
