@@ -16,6 +16,7 @@ from contactsense.cli.app import run as run_command
 from contactsense.demo.atlas.plan import DURATION_RANGE, END, FORCE_RANGE, PLACES, plan_pushes
 from contactsense.demo.atlas.settings import BEHIND, SENSORS, SensorNoise, choose
 from contactsense.demo.atlas.standing import FEET, posture
+from contactsense.demo.settings import noise_passed
 from contactsense.sim import named_model
 
 NOISE, SENSOR_NOISE = (2.0, 0.1), (1.0, 0.05)
