@@ -124,8 +124,7 @@ def test_thresholds_follow_the_noise() -> None:
     np.testing.assert_array_equal(exact.wrench_threshold, [[3.0] * 3 + [0.5] * 3] * 9)
     noisy = choose(robot, q, torque, demo.Noise(2.0, 1.0), SensorNoise(4.0, 0.5), 1e-3)
     assert noisy.observer_gain < exact.observer_gain
-    # A wrench is the mean of two readings.
-    scale = 6.0 * np.sqrt(0.5)
+    scale = 6.0 * noise_passed(noisy.observer_gain, 1e-3)
     names = [sensor.name for sensor in SENSORS]
     alone = scale * np.repeat([4.0, 0.5], 3)
     np.testing.assert_allclose(noisy.wrench_threshold[names.index("l_hand")], alone)
@@ -133,10 +132,13 @@ def test_thresholds_follow_the_noise() -> None:
     chest = noisy.wrench_threshold[names.index("utorso")]
     np.testing.assert_allclose(chest[:3], scale * np.sqrt(3.0) * 4.0)
     assert (chest[3:] > np.sqrt(3.0) * alone[3:]).all()
-    observed = 6.0 * noise_passed(noisy.observer_gain, 1e-3)
-    assert noisy.torque_threshold[6 + 3] == pytest.approx(observed * np.hypot(2.0, 1.0))
+    assert noisy.torque_threshold[6 + 3] == pytest.approx(scale * np.hypot(2.0, 1.0))
+    fast = choose(robot, q, torque, demo.Noise(), SensorNoise(4.0, 0.5), 1e-3, gain=500.0)
+    # Without a low-pass a wrench is the mean of two readings.
+    expected = 6.0 * np.sqrt(0.5) * np.repeat([4.0, 0.5], 3)
+    np.testing.assert_allclose(fast.wrench_threshold[names.index("l_hand")], expected)
     # Both feet's forces err along each of the base's axes.
-    np.testing.assert_allclose(noisy.torque_threshold[:3], observed * np.sqrt(2.0) * 4.0, rtol=1e-6)
+    np.testing.assert_allclose(noisy.torque_threshold[:3], scale * np.sqrt(2.0) * 4.0, rtol=1e-6)
 
 
 def test_sensors_behind_sensors_are_as_the_model_has_it() -> None:

@@ -206,7 +206,7 @@ def test_a_sensor_narrows_the_region_down() -> None:
 
 
 def test_a_sensor_alone_detects() -> None:
-    held, monitor = arm("panda_link3", torque_threshold=1e3, wrench_threshold=1.0)
+    held, monitor = arm("panda_link3", torque_threshold=1e3, wrench_threshold=1.0, wrench_gain=np.inf)
     held.settle(monitor, 5)
     held.pushes = [Push("panda_link5", (0.0, 0.0, 5.0))]
     report = held.tick(monitor)

@@ -240,7 +240,7 @@ class ContactMonitor:
         observer_gain: ArrayLike | None = None,
         torque_threshold: ArrayLike | None = None,
         wrench_threshold: ArrayLike | None = None,
-        inertia_gain: float | None = None,
+        wrench_gain: float | None = None,
         bias_time_constant: float | None = None,
         bias_settle_time: float | None = None,
         hold_time: float | None = None,

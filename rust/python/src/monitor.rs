@@ -109,8 +109,8 @@ impl PyContactReport {
 ///
 /// `dt`: time between two calls [s]. `sensors`: of `ForceTorqueSensor`, in the order of the readings; `wanted_contacts`:
 /// names of those whose contacts are meant (feet, hands): what touches behind them is no collision. `wrench_threshold`, on
-/// external wrenches: a scalar, `(6,)`, or `(n_sensors, 6)` [N, Nm], default 2. `inertia_gain` [1/s]: of the low-pass on the inertia
-/// that readings are freed of (velocities are noisy), default the smallest of
+/// external wrenches: a scalar, `(6,)`, or `(n_sensors, 6)` [N, Nm], default 2. `wrench_gain` [1/s]: of the low-pass on
+/// external wrenches (readings and velocities are noisy), default the smallest of
 /// `observer_gain`, and none where that is at least `0.5 / dt`; infinite for none. `observer_gain`: scalar or `(nv,)` [1/s], default 50. `torque_threshold`: scalar
 /// or `(nv,)` [Nm, N], default 0.5. `bias_time_constant` [s]: tracks the torque that a model's errors feign while
 /// nothing touches; the first time constant is taken as free of contact. `hold_time` [s], default 0.02: a signal stays on so
@@ -126,7 +126,7 @@ pub struct PyContactMonitor {
 impl PyContactMonitor {
     #[new]
     #[pyo3(signature = (robot, *, dt, sensors=None, wanted_contacts=None, observer_gain=None, torque_threshold=None,
-                        wrench_threshold=None, inertia_gain=None, bias_time_constant=None, bias_settle_time=None, hold_time=None, max_contacts=None, pushing=true))]
+                        wrench_threshold=None, wrench_gain=None, bias_time_constant=None, bias_settle_time=None, hold_time=None, max_contacts=None, pushing=true))]
     #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
         robot: &Bound<'_, PyRobot>,
@@ -136,7 +136,7 @@ impl PyContactMonitor {
         observer_gain: Option<&Bound<'_, PyAny>>,
         torque_threshold: Option<&Bound<'_, PyAny>>,
         wrench_threshold: Option<&Bound<'_, PyAny>>,
-        inertia_gain: Option<Number>,
+        wrench_gain: Option<Number>,
         bias_time_constant: Option<Number>,
         bias_settle_time: Option<Number>,
         hold_time: Option<Number>,
@@ -159,7 +159,7 @@ impl PyContactMonitor {
             options.hold_time = hold_time.0;
         }
         options.bias_time_constant = bias_time_constant.map(|number| number.0);
-        options.inertia_gain = inertia_gain.map(|number| number.0);
+        options.wrench_gain = wrench_gain.map(|number| number.0);
         options.bias_settle_time = bias_settle_time.map(|number| number.0);
         if let Some(sensors) = sensors {
             options.isolation.sensors = self::sensors(sensors)?;

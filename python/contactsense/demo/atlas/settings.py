@@ -99,8 +99,9 @@ def choose(
         np.maximum(floor, scale * np.sqrt(variance)),
         np.maximum(
             np.repeat([FORCE_FLOOR, SENSOR_FLOOR], 3),
-            # A wrench is the mean of two readings.
-            DEVIATIONS * np.sqrt(0.5 * _wrench_variance(robot, q, sensor_noise)),
+            # Without a low-pass a wrench is the mean of two readings.
+            (scale if gain * dt < 0.5 else DEVIATIONS * np.sqrt(0.5))
+            * np.sqrt(_wrench_variance(robot, q, sensor_noise)),
         ),
     )
 

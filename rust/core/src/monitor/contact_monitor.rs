@@ -21,9 +21,9 @@ pub struct MonitorOptions {
     pub dt: f64,
     /// Per velocity variable, or one for all [1/s].
     pub observer_gain: Vec<f64>,
-    /// Of the low-pass on the inertia that sensors' readings are freed of [1/s], infinite for no low-pass. If none, the
+    /// Of the low-pass on the sensors' external wrenches [1/s], infinite for no low-pass. If none, the
     /// observer's smallest, and no low-pass where that is at least half the tick rate.
-    pub inertia_gain: Option<f64>,
+    pub wrench_gain: Option<f64>,
     /// Thresholds, number of contacts, pushing, sensors.
     pub isolation: IsolatorOptions,
     /// A signal stays on for this time after it was last over its threshold [s].
@@ -41,7 +41,7 @@ impl MonitorOptions {
         Self {
             dt,
             observer_gain: vec![50.0],
-            inertia_gain: None,
+            wrench_gain: None,
             isolation: IsolatorOptions {
                 torque_threshold: vec![0.5],
                 wrench_threshold: vec![2.0],
@@ -133,7 +133,7 @@ impl ContactMonitor {
             tree,
             &options.isolation.wanted_contacts,
             observer.gain(),
-            options.inertia_gain,
+            options.wrench_gain,
             options.dt,
         )?;
         Ok(Self {

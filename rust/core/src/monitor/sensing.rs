@@ -34,13 +34,13 @@ pub(super) struct Sensing {
 }
 
 impl Sensing {
-    /// `wanted` names sensors; `gain` `(nv,)` and `dt` are the observer's, `inertia_gain` is of the inertia's low-pass.
+    /// `wanted` names sensors; `gain` `(nv,)` and `dt` are the observer's, `wrench_gain` is of the wrenches' low-pass.
     pub fn new(
         robot: &Arc<Robot>,
         tree: SensorTree,
         wanted: &[String],
         gain: &[f64],
-        inertia_gain: Option<f64>,
+        wrench_gain: Option<f64>,
         dt: f64,
     ) -> Result<Self> {
         let is_wanted = tree.wanted(wanted)?;
@@ -52,7 +52,7 @@ impl Sensing {
         }
         let slowest = gain.iter().copied().fold(f64::INFINITY, f64::min);
         Ok(Self {
-            wrenches: WrenchObserver::new(robot.clone(), &tree, gain, inertia_gain, dt)?,
+            wrenches: WrenchObserver::new(robot.clone(), &tree, gain, wrench_gain, dt)?,
             settling_time: SETTLING / slowest,
             unsettled: vec![0.0; tree.len()],
             wanted_torque: vec![0.0; gain.len()],

@@ -5,8 +5,8 @@
 //! the momentum observer gives. That one is late by the observer's low-pass, and so is what is compensated with it: a
 //! contact behind one sensor shows for some milliseconds in all others, on light parts that carry much (a foot on the
 //! ground) nearly in full. Here `h` itself is observed, as by eqs. 4-6: the wrench of each step is exact in the mean. Its
-//! torque goes through the same low-pass as the external torque, so that the two are of one age. Of the wrench itself
-//! only `dh/dt` has a low-pass, since a velocity's noise comes in there; the load comes without delay.
+//! torque goes through the same low-pass as the external torque, so that the two are of one age. The wrench itself has a
+//! low-pass for the noise of readings and velocities, or none, and then comes without delay.
 
 use std::sync::Arc;
 
@@ -33,10 +33,8 @@ pub struct WrenchObserver {
     dt: f64,
     /// `exp(-gain dt)` per velocity variable.
     decay: Vec<f64>,
-    /// The same of the momentum's rate; zero without a low-pass.
-    rate_decay: f64,
-    /// The momentum's rate behind its low-pass.
-    rate: Vec<Spatial>,
+    /// The same of the wrenches; zero without a low-pass.
+    wrench_decay: f64,
     /// The fixed point: where the first step's reference origin was, in the world.
     reference: Option<Vector3<f64>>,
     before: Kinematics,
@@ -53,32 +51,31 @@ pub struct WrenchObserver {
 }
 
 impl WrenchObserver {
-    /// For the sensors of a tree, the momentum observer's gain `(nv,)` [1/s] and its time step [s]; `inertia_gain` [1/s]
-    /// of the low-pass on the momentum's rate, infinite for no low-pass. By default the smallest of `gain`, and no
+    /// For the sensors of a tree, the momentum observer's gain `(nv,)` [1/s] and its time step [s]; `wrench_gain` [1/s]
+    /// of the low-pass on the wrenches, infinite for no low-pass. By default the smallest of `gain`, and no
     /// low-pass where that forgets within two ticks: it says that velocities can be trusted from tick to tick.
     ///
     /// # Errors
-    /// [`Error::Input`] where `inertia_gain` is not positive.
+    /// [`Error::Input`] where `wrench_gain` is not positive.
     pub fn new(
         robot: Arc<Robot>,
         tree: &SensorTree,
         gain: &[f64],
-        inertia_gain: Option<f64>,
+        wrench_gain: Option<f64>,
         dt: f64,
     ) -> Result<Self> {
         let slowest = gain.iter().copied().fold(f64::INFINITY, f64::min);
         let default = if slowest * dt < FAST { slowest } else { f64::INFINITY };
-        let inertia_gain = inertia_gain.unwrap_or(default);
-        if inertia_gain.is_nan() || inertia_gain <= 0.0 {
-            return Err(Error::Input(format!("inertia_gain: must be positive [1/s], not {inertia_gain}")));
+        let wrench_gain = wrench_gain.unwrap_or(default);
+        if wrench_gain.is_nan() || wrench_gain <= 0.0 {
+            return Err(Error::Input(format!("wrench_gain: must be positive [1/s], not {wrench_gain}")));
         }
         let zeros = vec![Spatial::zeros(); tree.len()];
         let decay: Vec<f64> = gain.iter().map(|gain| (-gain * dt).exp()).collect();
         Ok(Self {
             parts: distal_parts(&robot, tree),
             dt,
-            rate_decay: (-inertia_gain * dt).exp(),
-            rate: zeros.clone(),
+            wrench_decay: (-wrench_gain * dt).exp(),
             reference: None,
             before: Kinematics::new(&robot),
             momentum: zeros.clone(),
@@ -158,11 +155,10 @@ impl WrenchObserver {
         let rate = (self.momentum[sensor] - self.momentum_before[sensor]) / self.dt;
         // After a gap the low-passes start anew.
         let fresh = !is_known(&self.external[sensor]);
-        let smooth = &mut self.rate[sensor];
-        *smooth = if fresh { rate } else { rate + (*smooth - rate) * self.rate_decay };
-        self.external[sensor] = about(&(*smooth - known), kinematics);
         let mean = rate - known;
         let now = about(&mean, kinematics);
+        let external = &mut self.external[sensor];
+        *external = if fresh { now } else { now + (*external - now) * self.wrench_decay };
         let lagged = &mut self.lagged[sensor];
         sensor_torque(&self.robot, kinematics, tree, sensor, &now, &mut self.torque);
         for ((lagged, torque), decay) in lagged.iter_mut().zip(&self.torque).zip(&self.decay) {
@@ -175,7 +171,7 @@ impl WrenchObserver {
     }
 
     /// External wrenches: (force, moment) on the robot at each sensor's origin, world axes [N, Nm], the mean since the
-    /// last tick, but for what is left of the inertia by its low-pass; NaN where a sensor is left out.
+    /// last tick behind the low-pass, if any; NaN where a sensor is left out.
     pub fn external(&self) -> &[Vector6<f64>] {
         &self.external
     }
