@@ -25,8 +25,9 @@ pub(super) const CONTRADICTION: f64 = 1.0;
 /// A contact is located if its force exceeds so many standard deviations of it, and its link's bounding radius so
 /// many of the point's. A weaker force has the direction of the torques' errors, and feigns a certain point.
 pub(super) const SIGNIFICANCE: f64 = 3.0;
-/// A torque that is a difference of measured ones is none if it is less than this share of them.
-const LEFT_OVER: f64 = 0.05;
+/// A torque or wrench that is a difference of measured ones is none if it is less than this share of them: five
+/// standard deviations of sensors that err by a hundredth.
+pub(super) const LEFT_OVER: f64 = 0.05;
 
 /// Settings of a [`ContactIsolator`].
 #[derive(Debug, Clone)]
@@ -283,7 +284,7 @@ impl ContactIsolator {
 
     /// The bodies at the ends of what the joints feel, and their number; `share` of what sensors have explained
     /// already is no torque.
-    fn find_tips(&mut self, share: f64) -> usize {
+    pub(super) fn find_tips(&mut self, share: f64) -> usize {
         let Self { robot, tips, region, residual, limit, measured, .. } = self;
         let over = |k: usize| residual[k].abs() > limit[k].max(share * measured[k]);
         tips.find(robot, |k| region.feels[k] && over(k)).len()

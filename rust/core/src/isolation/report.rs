@@ -1,12 +1,14 @@
 //! From wrenches and hits to contacts, and how far they can be trusted.
 
+use nalgebra::Vector3;
+
 use super::force::{explain_force, identify_force};
 use super::found::Found;
 use super::isolator::{ContactIsolator, CONTRADICTION, SIGNIFICANCE};
 use super::result::{Candidate, Contact};
 use super::wrench::{for_each_column, WrenchEstimate};
 use crate::robot::motion::stack;
-use crate::robot::Kinematics;
+use crate::robot::{Kinematics, Robot};
 
 /// One of several contacts is located if its point's standard deviation is less [m].
 const SHARP: f64 = 0.01;
@@ -84,14 +86,7 @@ impl ContactIsolator {
         if self.isolation.candidates.len() == candidates {
             self.isolation.candidates.push(*hit);
         }
-        let pose = kinematics.link_pose(&robot, hit.link);
-        let mut contact = Contact::unlocated(hit.link);
-        contact.point = hit.point;
-        contact.point_local = pose.inverse_transform_point(&hit.point);
-        contact.normal = hit.normal;
-        contact.force = found.force;
-        contact.wrench = stack(&found.force, &(hit.point - pose.translation).cross(&found.force));
-        contact.point_std = point_std;
+        let mut contact = contact_at(&robot, kinematics, hit, &found.force, point_std);
         contact.candidates = candidates..self.isolation.candidates.len();
         contact.located = determined && self.pushing && SIGNIFICANCE * point_std < size;
         self.isolation.contacts.push(contact);
@@ -112,15 +107,7 @@ impl ContactIsolator {
         let point_std = self.spread(kinematics, wrench, hit);
         let (robot, link) = (&self.robot, &self.robot.links[hit.link]);
         let size = link.surface.as_ref().map_or(0.0, |surface| surface.bounding_sphere().1);
-
-        let pose = kinematics.link_pose(robot, hit.link);
-        let mut contact = Contact::unlocated(hit.link);
-        contact.point = hit.point;
-        contact.point_local = pose.inverse_transform_point(&hit.point);
-        contact.normal = hit.normal;
-        contact.force = force;
-        contact.wrench = stack(&force, &(hit.point - pose.translation).cross(&force));
-        contact.point_std = point_std;
+        let mut contact = contact_at(robot, kinematics, hit, &force, point_std);
         contact.candidates = 0..self.isolation.candidates.len();
         contact.located = self.pushing && SIGNIFICANCE * point_std < size && consistent;
         self.isolation.contacts.push(contact);
@@ -150,13 +137,13 @@ impl ContactIsolator {
 
     /// The line of action meets no surface where the force could enter: the wrench is known, the point is not.
     pub(super) fn report_wrench(&mut self, kinematics: &Kinematics, wrench: &WrenchEstimate) {
-        let all = 0..self.isolation.candidates.len();
+        let end = self.isolation.candidates.len();
         if let Some(contact) = self.isolation.contacts.last_mut() {
             let origin = kinematics.link_pose(&self.robot, contact.link).translation - kinematics.origin;
             contact.force = wrench.force;
             let moment = wrench.moment + (wrench.reference - origin).cross(&wrench.force);
             contact.wrench = stack(&wrench.force, &moment);
-            contact.candidates = all;
+            contact.candidates.end = end;
         }
     }
 
@@ -202,5 +189,25 @@ impl ContactIsolator {
         for_each_column(robot, kinematics, body, &wrench.reference, |k, column| {
             unexplained[k] -= wrench.torque_on(&column);
         });
+    }
+}
+
+/// A contact with all that a point and a force there determine.
+fn contact_at(
+    robot: &Robot,
+    kinematics: &Kinematics,
+    hit: &Candidate,
+    force: &Vector3<f64>,
+    point_std: f64,
+) -> Contact {
+    let pose = kinematics.link_pose(robot, hit.link);
+    Contact {
+        point: hit.point,
+        point_local: pose.inverse_transform_point(&hit.point),
+        normal: hit.normal,
+        force: *force,
+        wrench: stack(force, &(hit.point - pose.translation).cross(force)),
+        point_std,
+        ..Contact::unlocated(hit.link)
     }
 }

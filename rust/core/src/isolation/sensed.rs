@@ -3,7 +3,7 @@
 use nalgebra::{Vector3, Vector6};
 
 use super::found::{Found, Scene};
-use super::isolator::{ContactIsolator, CONTRADICTION};
+use super::isolator::{ContactIsolator, CONTRADICTION, LEFT_OVER};
 use super::line::best_first;
 use super::result::{Candidate, Contact};
 use super::rows::{Root, TORQUE_SHARE};
@@ -12,9 +12,6 @@ use crate::robot::motion::{split, stack};
 use crate::robot::Kinematics;
 use crate::sensor::{is_known, sensor_torque, WrenchObserver};
 
-/// A wrench that is a difference of measured ones is none if it is less than this share of them: five standard
-/// deviations of sensors that err by a hundredth.
-const LEFT_OVER: f64 = 0.05;
 /// Moment along the force that rounding leaves [tolerances].
 const EXACT: f64 = 1e-6;
 
@@ -133,9 +130,8 @@ impl ContactIsolator {
         if moment > EXACT && !certain {
             return;
         }
-        let robot = &self.robot;
-        let felt = |k: usize| self.residual[k].abs() > self.limit[k].max(LEFT_OVER * self.measured[k]);
-        let tip = match self.tips.find(robot, |k| self.region.feels[k] && felt(k)) {
+        self.find_tips(LEFT_OVER);
+        let tip = match self.tips.tips() {
             [tip] => Some(*tip),
             _ => None,
         };
