@@ -1,25 +1,30 @@
 """Where a link's true surface and an obstacle meet deepest.
 
 The deepest point is the point of the link's surface that is nearest to the obstacle's core; the contact normal
-runs between the two, also on edges and corners of the mesh. For a sphere this is exact: the nearest surface
-point to its centre. For a pole and a cube, the distance of the core's points from the link is minimised over
-the core: from a grid of starts, by projected gradient steps whose length follows Barzilai and Borwein (1988).
+runs between the two, also on edges and corners of the mesh. For a sphere that is the nearest point to its centre.
+For a pole and a cube, coal finds the nearest pair of the surface's triangles and the core; on exact primitives,
+which it gets as triangles, the pair is then drawn to the true surface by alternate projections.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
+from weakref import WeakKeyDictionary
 
+import coal
 import numpy as np
 
 from contactsense import Robot, Surface
 from contactsense.errors import InputError
 
 from ._arrays import FloatArray
-from .obstacles import Obstacle, SphereObstacle
+from .obstacles import CubeObstacle, Obstacle, SphereObstacle
 
-_ROUNDS = 80
-_STILL = 1e-9  # [m]
+# Relative accuracy of coal's distances.
+_TOLERANCE = 1e-9
+# Rounds of projection, and the step at which they end [m].
+_ROUNDS, _STILL = 50, 1e-9
 # Below this cosine between the triangle's normal and the way to the query, the side is checked with a ray.
 _CLEAR = 0.2
 
@@ -52,8 +57,9 @@ class ContactQuery:
         if unknown:
             raise InputError(f"links: '{unknown[0]}' has no surface; there are {', '.join(robot.link_names)}")
         self.robot, self.obstacle, self.links = robot, obstacle, names
+        self._shape = None if isinstance(obstacle, SphereObstacle) else _Core(obstacle)
         self._surfaces = {name: robot.surface(name) for name in names}
-        self._balls = {name: _bounding_ball(surface) for name, surface in self._surfaces.items()}
+        self._known = _KNOWN.setdefault(robot, {})
 
     def touching(self, q: FloatArray) -> list[DeepestPoint]:
         """One for each link that penetrates the obstacle at `q`, deepest first."""
@@ -67,7 +73,7 @@ class ContactQuery:
     def near(self, q: FloatArray, link: str, margin: float) -> DeepestPoint | None:
         """The deepest point of `link`, or None where the gap exceeds `margin` [m]."""
         pose = self.robot.link_pose(q, link)
-        center, radius = self._balls[link]
+        center, radius = self._body(link).ball
         middle = pose[:3, :3] @ center + pose[:3, 3]
         if float(self.obstacle.signed_distance(middle[None])[0]) > radius + margin:
             return None
@@ -81,51 +87,104 @@ class ContactQuery:
     def _deepest(self, pose: FloatArray, link: str) -> DeepestPoint:
         surface = self._surfaces[link]
         rotation, origin = pose[:3, :3], pose[:3, 3]
-        core = (self.obstacle.starts() - origin) @ rotation
-        if not isinstance(self.obstacle, SphereObstacle):
-            core = self._nearest_of_core(surface, core, rotation, origin)[None]
-        closest = surface.closest_points(core)
-        point, distance = closest.points[0], float(closest.distances[0])
-        arm = core[0] - point
-        outside = float(arm @ closest.normals[0]) > _CLEAR * distance or not inside(surface, core[0])
-        sign = 1.0 if outside else -1.0
-        normal = sign * arm / distance if distance > 1e-9 else closest.normals[0]
-        penetration = self.obstacle.rounding - sign * distance
-        return DeepestPoint(link, rotation @ point + origin, rotation @ normal, penetration)
+        if self._shape is None:
+            return _at_center(surface, link, rotation, origin, self.obstacle)
+        body = self._body(link)
+        on_link, on_core = self._shape.nearest(body, rotation, origin)
+        if body.exact:
+            on_link, on_core = self._polish(surface, rotation, origin, on_core)
+        arm = on_core - on_link
+        distance = float(np.linalg.norm(arm))
+        normal = arm / distance if distance > 1e-12 else np.zeros(3)
+        return DeepestPoint(link, on_link, normal, self.obstacle.rounding - distance)
 
-    def _nearest_of_core(
-        self, surface: Surface, starts: FloatArray, rotation: FloatArray, origin: FloatArray
-    ) -> FloatArray:
-        """(3,) the point of the core nearest to the surface, link frame."""
-        reach = float(np.linalg.norm(starts[1] - starts[0]))
-        distances = surface.closest_points(starts).distances
-        # The distance changes by no more than the way between two points: farther starts cannot win.
-        order = np.argsort(distances)
-        order = order[distances[order] < distances[order[0]] + reach][:_STARTS]
-        points = starts[order]
-        steps = np.ones((len(points), 1))
-        best, least = points[0], float(distances[order[0]])
-        before, slope_before = points, np.zeros_like(points)
-        for turn in range(_ROUNDS):
-            closest = surface.closest_points(points)
-            slope = points - closest.points
-            k = int(np.argmin(closest.distances))
-            if closest.distances[k] < least:
-                best, least = points[k], float(closest.distances[k])
-            if turn:
-                way, change = points - before, slope - slope_before
-                product = (way * change).sum(axis=1, keepdims=True)
-                length = (way * way).sum(axis=1, keepdims=True)
-                steps = np.where(product > 1e-3 * length, length / np.maximum(product, 1e-300), 1.0)
-            before, slope_before = points, slope
-            world = (points - steps * slope) @ rotation.T + origin
-            points = (self.obstacle.project(world) - origin) @ rotation
-            if float(np.abs(points - before).max()) < _STILL:
+    def _body(self, link: str) -> _Body:
+        if link not in self._known:
+            self._known[link] = _Body(self._surfaces[link])
+        return self._known[link]
+
+    def _polish(
+        self, surface: Surface, rotation: FloatArray, origin: FloatArray, on_core: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        for _ in range(_ROUNDS):
+            local = surface.closest_points(((on_core - origin) @ rotation)[None]).points[0]
+            on_link = rotation @ local + origin
+            before, on_core = on_core, self.obstacle.project(on_link[None])[0]
+            if float(np.abs(on_core - before).max()) < _STILL:
                 break
-        return best
+        return on_link, on_core
 
 
-_STARTS = 4
+def _at_center(
+    surface: Surface, link: str, rotation: FloatArray, origin: FloatArray, sphere: Obstacle
+) -> DeepestPoint:
+    center = (sphere.center - origin) @ rotation
+    closest = surface.closest_points(center[None])
+    point, distance = closest.points[0], float(closest.distances[0])
+    arm = center - point
+    outside = float(arm @ closest.normals[0]) > _CLEAR * distance or not inside(surface, center)
+    sign = 1.0 if outside else -1.0
+    normal = sign * arm / distance if distance > 1e-9 else closest.normals[0]
+    penetration = sphere.rounding - sign * distance
+    return DeepestPoint(link, rotation @ point + origin, rotation @ normal, penetration)
+
+
+class _Body:
+    """A link's triangles as coal searches them, and a sphere around all of it."""
+
+    def __init__(self, surface: Surface) -> None:
+        vertices, triangles = surface.vertices, surface.triangles
+        points, corners = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
+        for vertex in vertices:
+            points.append(vertex)
+        for a, b, c in triangles.tolist():
+            corners.append(coal.Triangle(a, b, c))
+        self.model = coal.BVHModelOBBRSS()
+        self.model.beginModel(len(triangles), len(vertices))
+        self.model.addSubModel(points, corners)
+        self.model.endModel()
+        # Exact primitives answer without a triangle.
+        self.exact = bool((surface.closest_points(vertices[:1]).triangles < 0).all())
+        center = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
+        # Primitives bulge a little beyond their tessellation.
+        self.ball = center, 1.02 * float(np.linalg.norm(vertices - center, axis=1).max()) + 1e-3
+
+
+# Made at first need, shared by all queries of a robot.
+_KNOWN: WeakKeyDictionary[Robot, dict[str, _Body]] = WeakKeyDictionary()
+
+
+class _Core:
+    """The core of a cube or a pole as coal knows it."""
+
+    def __init__(self, obstacle: Obstacle) -> None:
+        if isinstance(obstacle, CubeObstacle):
+            self._shape: Any = coal.Box(*np.maximum(2.0 * obstacle.core, 1e-9))
+            rotation = obstacle.rotation
+        else:
+            assert not isinstance(obstacle, SphereObstacle)
+            self._shape = coal.Capsule(0.0, 2.0 * obstacle.half_length)
+            rotation = _frame_along(obstacle.axis)
+        self._pose = coal.Transform3s(rotation, obstacle.center)
+        self._request = coal.DistanceRequest()
+        self._request.gjk_tolerance = _TOLERANCE
+
+    def nearest(
+        self, body: _Body, rotation: FloatArray, origin: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """World points, each (3,), of the surface and of the core; the same where they cross."""
+        result = coal.DistanceResult()
+        pose = coal.Transform3s(rotation, origin)
+        distance = coal.distance(body.model, pose, self._shape, self._pose, self._request, result)
+        first = np.array(result.getNearestPoint1(), dtype=np.float64)
+        second = np.array(result.getNearestPoint2(), dtype=np.float64)
+        return first, second if distance > 0.0 else first
+
+
+def _frame_along(axis: FloatArray) -> FloatArray:
+    first = np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
+    first /= np.linalg.norm(first)
+    return np.stack([first, np.cross(axis, first), axis], axis=1)
 
 
 def inside(surface: Surface, point: FloatArray) -> bool:
@@ -147,10 +206,3 @@ def moving_links(robot: Robot) -> tuple[str, ...]:
     """Links with a surface that some joint moves."""
     q = robot.neutral()
     return tuple(link for link in robot.link_names if np.abs(robot.jacobian(q, link)).max() > 0.0)
-
-
-def _bounding_ball(surface: Surface) -> tuple[FloatArray, float]:
-    vertices = surface.vertices
-    center = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
-    # Primitives bulge a little beyond their tessellation.
-    return center, 1.02 * float(np.linalg.norm(vertices - center, axis=1).max()) + 1e-3

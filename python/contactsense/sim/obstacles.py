@@ -71,10 +71,6 @@ class SphereObstacle(_Rounded):
     def project(self, points: FloatArray) -> FloatArray:
         return np.broadcast_to(self.center, points.shape)
 
-    def starts(self) -> FloatArray:
-        """(n, 3) points of the core from which a search for the nearest one begins."""
-        return self.center[None]
-
     def to_dict(self) -> dict[str, Any]:
         """Plain values for `obstacle_from_dict`."""
         return {"kind": "sphere", "center": self.center.tolist(), "radius": self.radius}
@@ -129,11 +125,6 @@ class CubeObstacle(_Rounded):
         nearest: FloatArray = self.center + np.clip(local, -self.core, self.core) @ self.rotation.T
         return nearest
 
-    def starts(self) -> FloatArray:
-        """(n, 3) points of the core from which a search for the nearest one begins."""
-        points: FloatArray = self.center + (_BOX * self.core) @ self.rotation.T
-        return points
-
     def to_dict(self) -> dict[str, Any]:
         """Plain values for `obstacle_from_dict`."""
         return {
@@ -177,13 +168,6 @@ class CylinderObstacle(_Rounded):
         nearest: FloatArray = self.center + along[:, None] * self.axis
         return nearest
 
-    def starts(self) -> FloatArray:
-        """(n, 3) points of the core from which a search for the nearest one begins."""
-        count = int(np.clip(np.ceil(2 * self.half_length / _SPACING), 2, 64)) + 1
-        steps = np.linspace(-self.half_length, self.half_length, count)
-        points: FloatArray = self.center + steps[:, None] * self.axis
-        return points
-
     def to_dict(self) -> dict[str, Any]:
         """Plain values for `obstacle_from_dict`."""
         return {
@@ -196,19 +180,6 @@ class CylinderObstacle(_Rounded):
 
 
 Obstacle: TypeAlias = SphereObstacle | CubeObstacle | CylinderObstacle
-
-# Between the starts on a pole [m].
-_SPACING = 0.03
-
-
-def _box_grid() -> FloatArray:
-    steps = np.linspace(-1.0, 1.0, 5)
-    grid = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1).reshape(-1, 3)
-    surface: FloatArray = grid[np.abs(grid).max(axis=1) == 1.0]
-    return surface
-
-
-_BOX = _box_grid()
 
 
 def obstacle_from_dict(values: Mapping[str, Any]) -> Obstacle:

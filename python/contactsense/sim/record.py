@@ -10,7 +10,7 @@ import pinocchio as pin
 from contactsense import MomentumObserver, Robot
 from contactsense.errors import InputError
 
-from ._arrays import FloatArray, positive
+from ._arrays import FloatArray, not_negative, positive
 from .arm import SimulatedRobot
 from .disturbance import TorqueError
 from .exploration import ContactPath
@@ -25,7 +25,12 @@ class SoftController(Protocol):
     """`ImpedanceController`, `HandImpedanceController`, or another."""
 
     def torque(
-        self, q: FloatArray, v: FloatArray, desired: FloatArray, feedforward: FloatArray | None = None
+        self,
+        q: FloatArray,
+        v: FloatArray,
+        desired: FloatArray,
+        desired_v: FloatArray | None = None,
+        feedforward: FloatArray | None = None,
     ) -> FloatArray: ...
 
 
@@ -42,6 +47,7 @@ def record_run(
     external_torque: Literal["observer", "static"] = "observer",
     observer_gain: float = 50.0,
     rate: float = 50.0,
+    settle: float = 0.3,
     dt: float = 0.001,
     settings: dict[str, Any] | None = None,
 ) -> ContactRun:
@@ -64,6 +70,7 @@ def record_run(
         external_torque: "observer": `MomentumObserver`; "static": `g(q) - tau`, right while the arm is slow.
         observer_gain: [1/s].
         rate: of the samples [Hz]; a whole number of ticks must fit between them.
+        settle: rest at the path's first pose before time zero, so that the observer has caught up [s].
         dt: control tick and simulation step [s].
         settings: added to those of the record.
 
@@ -84,14 +91,14 @@ def record_run(
     still = np.zeros(robot.nv)
     rows: list[tuple[FloatArray, ...]] = []
     forces: list[tuple[ContactForce, ...]] = []
-    for tick in range(round(float(path.time[-1]) / dt) + 1):
+    for tick in range(-round(not_negative("settle", settle) / dt), round(float(path.time[-1]) / dt) + 1):
         q, v = arm.q, arm.v
-        desired, planned = path.at(tick * dt)
+        goal = path.at(tick * dt)
         arm.clear_forces()
         contact.apply(arm)
-        measured = arm.step(control.torque(q, v, desired, -planned))
+        measured = arm.step(control.torque(q, v, goal.q, goal.v, -goal.external_torque))
         felt = observer.update(q, v, measured.tau_mean)
-        if tick % ticks == 0:
+        if tick >= 0 and tick % ticks == 0:
             if external_torque == "static":
                 felt = robot.inverse_dynamics(q, still, still) - measured.tau_mean
             forces.append(contact.forces(q, v))
