@@ -1,28 +1,25 @@
 """Where a link's true surface and an obstacle meet deepest.
 
-The deepest point is the point of the link's surface that is nearest to the obstacle's core; the contact normal
-runs between the two, also on edges and corners of the mesh. For a sphere that is the nearest point to its centre.
-For a pole and a cube, coal finds the nearest pair of the surface's triangles and the core; on exact primitives,
-which it gets as triangles, the pair is then drawn to the true surface by alternate projections.
+The deepest point is the point of the link's surface that is nearest to the obstacle's core; the contact
+normal runs between the two, also on edges and corners of the mesh. For a sphere that is the nearest point to
+its centre. For a pole and a cube, coal finds the nearest pair of the surface's triangles and the core; on
+exact primitives, which it gets as triangles, the pair is then drawn to the true surface by alternate
+projections.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
-from weakref import WeakKeyDictionary
 
-import coal
 import numpy as np
 
 from contactsense import Robot, Surface
 from contactsense.errors import InputError
 
 from ._arrays import FloatArray
-from .obstacles import CubeObstacle, Obstacle, SphereObstacle
+from .nearest_pair import ObstacleCore, link_body
+from .obstacles import Obstacle, SphereObstacle
 
-# Relative accuracy of coal's distances.
-_TOLERANCE = 1e-9
 # Rounds of projection, and the step at which they end [m].
 _ROUNDS, _STILL = 50, 1e-9
 # Below this cosine between the triangle's normal and the way to the query, the side is checked with a ray.
@@ -57,9 +54,8 @@ class ContactQuery:
         if unknown:
             raise InputError(f"links: '{unknown[0]}' has no surface; there are {', '.join(robot.link_names)}")
         self.robot, self.obstacle, self.links = robot, obstacle, names
-        self._shape = None if isinstance(obstacle, SphereObstacle) else _Core(obstacle)
+        self._shape = None if isinstance(obstacle, SphereObstacle) else ObstacleCore(obstacle)
         self._surfaces = {name: robot.surface(name) for name in names}
-        self._known = _KNOWN.setdefault(robot, {})
 
     def touching(self, q: FloatArray) -> list[DeepestPoint]:
         """One for each link that penetrates the obstacle at `q`, deepest first."""
@@ -73,7 +69,7 @@ class ContactQuery:
     def near(self, q: FloatArray, link: str, margin: float) -> DeepestPoint | None:
         """The deepest point of `link`, or None where the gap exceeds `margin` [m]."""
         pose = self.robot.link_pose(q, link)
-        center, radius = self._body(link).ball
+        center, radius = link_body(self.robot, link, self._surfaces[link]).ball
         middle = pose[:3, :3] @ center + pose[:3, 3]
         if float(self.obstacle.signed_distance(middle[None])[0]) > radius + margin:
             return None
@@ -89,7 +85,7 @@ class ContactQuery:
         rotation, origin = pose[:3, :3], pose[:3, 3]
         if self._shape is None:
             return _at_center(surface, link, rotation, origin, self.obstacle)
-        body = self._body(link)
+        body = link_body(self.robot, link, surface)
         on_link, on_core = self._shape.nearest(body, rotation, origin)
         if body.exact:
             on_link, on_core = self._polish(surface, rotation, origin, on_core)
@@ -97,11 +93,6 @@ class ContactQuery:
         distance = float(np.linalg.norm(arm))
         normal = arm / distance if distance > 1e-12 else np.zeros(3)
         return DeepestPoint(link, on_link, normal, self.obstacle.rounding - distance)
-
-    def _body(self, link: str) -> _Body:
-        if link not in self._known:
-            self._known[link] = _Body(self._surfaces[link])
-        return self._known[link]
 
     def _polish(
         self, surface: Surface, rotation: FloatArray, origin: FloatArray, on_core: FloatArray
@@ -129,66 +120,9 @@ def _at_center(
     return DeepestPoint(link, rotation @ point + origin, rotation @ normal, penetration)
 
 
-class _Body:
-    """A link's triangles as coal searches them, and a sphere around all of it."""
-
-    def __init__(self, surface: Surface) -> None:
-        vertices, triangles = surface.vertices, surface.triangles
-        points, corners = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
-        for vertex in vertices:
-            points.append(vertex)
-        for a, b, c in triangles.tolist():
-            corners.append(coal.Triangle(a, b, c))
-        self.model = coal.BVHModelOBBRSS()
-        self.model.beginModel(len(triangles), len(vertices))
-        self.model.addSubModel(points, corners)
-        self.model.endModel()
-        # Exact primitives answer without a triangle.
-        self.exact = bool((surface.closest_points(vertices[:1]).triangles < 0).all())
-        center = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
-        # Primitives bulge a little beyond their tessellation.
-        self.ball = center, 1.02 * float(np.linalg.norm(vertices - center, axis=1).max()) + 1e-3
-
-
-# Made at first need, shared by all queries of a robot.
-_KNOWN: WeakKeyDictionary[Robot, dict[str, _Body]] = WeakKeyDictionary()
-
-
-class _Core:
-    """The core of a cube or a pole as coal knows it."""
-
-    def __init__(self, obstacle: Obstacle) -> None:
-        if isinstance(obstacle, CubeObstacle):
-            self._shape: Any = coal.Box(*np.maximum(2.0 * obstacle.core, 1e-9))
-            rotation = obstacle.rotation
-        else:
-            assert not isinstance(obstacle, SphereObstacle)
-            self._shape = coal.Capsule(0.0, 2.0 * obstacle.half_length)
-            rotation = _frame_along(obstacle.axis)
-        self._pose = coal.Transform3s(rotation, obstacle.center)
-        self._request = coal.DistanceRequest()
-        self._request.gjk_tolerance = _TOLERANCE
-
-    def nearest(
-        self, body: _Body, rotation: FloatArray, origin: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
-        """World points, each (3,), of the surface and of the core; the same where they cross."""
-        result = coal.DistanceResult()
-        pose = coal.Transform3s(rotation, origin)
-        distance = coal.distance(body.model, pose, self._shape, self._pose, self._request, result)
-        first = np.array(result.getNearestPoint1(), dtype=np.float64)
-        second = np.array(result.getNearestPoint2(), dtype=np.float64)
-        return first, second if distance > 0.0 else first
-
-
-def _frame_along(axis: FloatArray) -> FloatArray:
-    first = np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
-    first /= np.linalg.norm(first)
-    return np.stack([first, np.cross(axis, first), axis], axis=1)
-
-
 def inside(surface: Surface, point: FloatArray) -> bool:
-    """Whether `point` (3,), link frame, is in the body: a ray from it leaves as often as it enters, and once more.
+    """Whether `point` (3,), link frame, is in the body: a ray from it leaves as often as it enters, and once
+    more.
 
     On a surface that is not closed, the side of the nearest triangle decides.
     """

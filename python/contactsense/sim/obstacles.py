@@ -80,8 +80,8 @@ class SphereObstacle(_Rounded):
 class CubeObstacle(_Rounded):
     """A box in the world with slightly rounded edges.
 
-    `center` (3,) [m]; `half_extents` (3,), or one number for a cube [m]; `rotation` (3, 3) from its axes to the
-    world's; `edge_radius` of its edges and corners, inside the extents [m].
+    `center` (3,) [m]; `half_extents` (3,), or one number for a cube [m]; `rotation` (3, 3) from its axes to
+    the world's; `edge_radius` of its edges and corners, inside the extents [m].
     """
 
     center: FloatArray
@@ -97,7 +97,10 @@ class CubeObstacle(_Rounded):
             raise InputError("half_extents must be positive")
         object.__setattr__(self, "half_extents", extents)
         rotation = vector("rotation", np.asarray(self.rotation, dtype=np.float64).ravel(), 9).reshape(3, 3)
-        if not np.allclose(rotation @ rotation.T, np.eye(3), rtol=0, atol=1e-9) or np.linalg.det(rotation) < 0:
+        if (
+            not np.allclose(rotation @ rotation.T, np.eye(3), rtol=0, atol=1e-9)
+            or np.linalg.det(rotation) < 0
+        ):
             raise InputError("rotation must be a rotation matrix (3, 3)")
         object.__setattr__(self, "rotation", rotation)
         radius = positive("edge_radius", self.edge_radius)
@@ -188,15 +191,16 @@ def obstacle_from_dict(values: Mapping[str, Any]) -> Obstacle:
     Raises:
         InputError: no such kind, or a value is missing or wrong.
     """
-    kinds = {"sphere": SphereObstacle, "cube": CubeObstacle, "cylinder": CylinderObstacle}
+    kinds: dict[str, Any] = {"sphere": SphereObstacle, "cube": CubeObstacle, "cylinder": CylinderObstacle}
     rest = dict(values)
     kind = rest.pop("kind", None)
     if kind not in kinds:
         raise InputError(f"kind must be one of {', '.join(kinds)}, not {kind!r}")
     try:
-        return kinds[kind](**rest)
+        obstacle: Obstacle = kinds[kind](**rest)
     except TypeError as error:
         raise InputError(f"obstacle: {error}") from error
+    return obstacle
 
 
 def _rows(name: str, points: ArrayLike) -> FloatArray:

@@ -12,8 +12,8 @@ from contactsense.errors import InputError
 
 from ._arrays import FloatArray, not_negative, positive
 from .arm import SimulatedRobot
+from .contact_path import ContactPath
 from .disturbance import TorqueError
-from .exploration import ContactPath
 from .impedance import ImpedanceController
 from .noise import TorqueNoise
 from .penalty import ContactForce, PenaltyContact
@@ -53,9 +53,9 @@ def record_run(
 ) -> ContactRun:
     """Simulate an arm that follows `path` softly, pressing on the obstacle; record at `rate`.
 
-    It starts at rest at the path's first pose. The controller is fed the path's poses, and the torques with which
-    the contact is planned to push back: a soft arm alone would stop short of the obstacle. Forces are those of
-    `contact`, at the deepest point of the true surface, new in every tick.
+    It starts at rest at the path's first pose. The controller is fed the path's poses, and the torques with
+    which the contact is planned to push back: a soft arm alone would stop short of the obstacle. Forces are
+    those of `contact`, at the deepest point of the true surface, new in every tick.
 
     Args:
         robot: what is known of the arm: the observer uses it.
@@ -79,7 +79,9 @@ def record_run(
     """
     ticks = round(1.0 / (positive("rate", rate) * positive("dt", dt)))
     if ticks < 1 or abs(ticks * dt * rate - 1.0) > 1e-6:
-        raise InputError(f"rate must leave a whole number of ticks of {dt:g} s between samples, not {rate:g} Hz")
+        raise InputError(
+            f"rate must leave a whole number of ticks of {dt:g} s between samples, not {rate:g} Hz"
+        )
     if external_torque not in ("observer", "static"):
         raise InputError(f"external_torque must be 'observer' or 'static', not {external_torque!r}")
     if (model.nq, model.nv) != (robot.nq, robot.nv):

@@ -64,14 +64,15 @@ def touch_scene(
 ) -> TouchScene:
     """A random pose, a random point of `link`, and an obstacle that presses there and touches nothing else.
 
-    A point whose force turns no joint cannot be felt by joint torques, whoever looks: such draws (near joint 1's
-    axis, or pressed along it) are thrown away, as are those with another link, moving or fixed, within
+    A point whose force turns no joint cannot be felt by joint torques, whoever looks: such draws (near joint
+    1's axis, or pressed along it) are thrown away, as are those with another link, moving or fixed, within
     `clearance`. So points are uniform by area only among those that can be touched and felt.
 
     Args:
-        model: of the same robot; gives the joints' limits, the middle 90 % of which is drawn from (a turn about
-            zero where there are none).
-        kind: "sphere"; "cube", with an edge towards the link; "cylinder", a pole tangent to it in a random way.
+        model: of the same robot; gives the joints' limits, the middle 90 % of which is drawn from (a turn
+            about zero where there are none).
+        kind: "sphere"; "cube", with an edge towards the link; "cylinder", a pole tangent to it in a random
+            way.
         q: (nq,) this pose instead of a random one.
         force_range: uniform [N].
         radius_range: of sphere and pole, log-uniform; half extent of the cube [m].
@@ -102,7 +103,11 @@ def touch_scene(
             size, stiffness = _log_uniform(rng, radius_range), _log_uniform(rng, stiffness_range)
             drawn = _place(robot, pose, link, kind, size, force / stiffness, rng)
             scene = drawn and _judge(robot, pose, link, drawn, stiffness, clearance)
-            if scene and np.linalg.norm(scene.external_torque) >= least_torque and _within(scene, force_range):
+            if (
+                scene
+                and np.linalg.norm(scene.external_torque) >= least_torque
+                and _within(scene, force_range)
+            ):
                 return scene
     raise InputError(
         f"link: no touch of '{link}' by a {kind} was found in {_TRIES} draws; other poses, sizes or a lower"
@@ -119,7 +124,7 @@ def _place(
     depth: float,
     rng: np.random.Generator,
 ) -> Obstacle | None:
-    """An obstacle whose surface is `depth` under a random point of the link; None if that is too deep for it."""
+    """An obstacle `depth` deep in a random point of the link; None if it is too small for that."""
     sample = robot.surface(link).sample(1, seed=int(rng.integers(2**62)))
     pose = robot.link_pose(q, link)
     point = pose[:3, :3] @ sample.points[0] + pose[:3, 3]
@@ -140,11 +145,11 @@ def _place(
     lean = rng.uniform(np.pi / 6, np.pi / 3)
     first = np.cos(lean) * normal + np.sin(lean) * other
     rotation = np.stack([across, first, np.cross(across, first)], axis=1)
-    box = CubeObstacle(np.zeros(3), size, rotation, edge)
+    box = CubeObstacle(np.zeros(3), np.full(3, size), rotation, edge)
     support = -(np.abs(normal @ rotation) @ box.core) - edge
     corner = -(rotation @ (np.sign(normal @ rotation) * box.core * [0.0, 1.0, 1.0])) - edge * normal
     assert abs(corner @ normal - support) < 1e-9
-    return CubeObstacle(point - depth * normal - corner, size, rotation, edge)
+    return CubeObstacle(point - depth * normal - corner, np.full(3, size), rotation, edge)
 
 
 def _judge(
