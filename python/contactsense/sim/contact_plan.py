@@ -22,7 +22,11 @@ _NEWTON = 12
 _CLOSE = 1e-6
 # A correction never turns a joint farther than this at once [rad].
 _LARGEST = 0.05
-_TRIES = 20
+# Beyond this, there is no such pose nearby [rad].
+_FARTHEST = 1.0
+_TRIES, _SHORTER = 20, 0.8
+# A motion is corrected at least so often.
+_STEPS = 8
 
 
 class HeldLink:
@@ -50,94 +54,85 @@ def plan(
     seed: int,
     hold: HeldLink | None = None,
 ) -> ContactPath:
+    """A path of motions to `scene.q + step(k, generator)`, each corrected; see the explorations."""
     low, high = force_band
     if not 0.0 < low <= high:
         raise InputError("force_band must be (least, greatest), both above zero")
     if robot.nq != robot.nv:
         raise InputError("robot: exploration needs a fixed base and joints with one coordinate each")
     rng = np.random.default_rng(seed)
-    query = ContactQuery(robot, scene.obstacle, links=(scene.link,))
-    others = ContactQuery(robot, scene.obstacle, links=robot.link_names)
-    depth = float(np.linalg.norm(scene.force)) / scene.stiffness
+    walk = _Walk(robot, scene, pace, hold)
     deepest = 0.9 * scene.obstacle.rounding
-    corners, depths = [scene.q], [depth]
+    poses, depth = [scene.q], walk.depth
     for k in range(pace.motions):
-        for _ in range(_TRIES):
-            goal = min(depth * rng.uniform(low, high), deepest)
-            q = _correct(query, scene.link, scene.q + step(k, rng), goal, hold)
-            if q is not None and _alone(others, q, scene.link):
-                corners.append(q)
-                depths.append(goal)
+        for failed in range(_TRIES):
+            goal = min(walk.depth * rng.uniform(low, high), deepest)
+            # Where long ones fail, shorter ones may do.
+            knots = walk.to(poses[-1], scene.q + _SHORTER**failed * step(k, rng), depth, goal)
+            if knots is not None:
+                poses += knots
+                depth = goal
                 break
         else:
             raise InputError("scene: the contact is lost in every motion tried; smaller ones may keep it")
-    return _path(query, scene, np.array(corners), np.array(depths), pace, hold)
+    torques = np.array([walk.torque(q) for q in poses])
+    return ContactPath(np.arange(len(poses)) / pace.rate, np.array(poses), torques)
 
 
-def _alone(query: ContactQuery, q: FloatArray, link: str) -> bool:
-    return all(query.near(q, other, 0.0) is None for other in query.links if other != link)
+class _Walk:
+    """From pose to pose in contact."""
 
+    def __init__(self, robot: Robot, scene: TouchScene, pace: Pace, hold: HeldLink | None) -> None:
+        self._robot, self._scene, self._hold = robot, scene, hold
+        self._query = ContactQuery(robot, scene.obstacle, links=robot.link_names)
+        self.depth = float(np.linalg.norm(scene.force)) / scene.stiffness
+        count = round(pace.rate * pace.duration)
+        self._every = -(-_STEPS // count)
+        share = np.arange(count * self._every + 1) / (count * self._every)
+        self._ease = share**3 * (10 + share * (-15 + 6 * share))
 
-def _path(
-    query: ContactQuery,
-    scene: TouchScene,
-    corners: FloatArray,
-    depths: FloatArray,
-    pace: Pace,
-    hold: HeldLink | None,
-) -> ContactPath:
-    count = round(pace.rate * pace.duration)
-    share = np.arange(1, count + 1) / count
-    ease = share**3 * (10 + share * (-15 + 6 * share))
-    poses, torques = [], []
-    for k in range(len(corners)):
-        if k == 0:
-            sections = [(corners[0], depths[0])]
-        else:
-            sections = [
-                (
-                    corners[k - 1] + s * (corners[k] - corners[k - 1]),
-                    depths[k - 1] + s * (depths[k] - depths[k - 1]),
-                )
-                for s in ease
-            ]
-        for between, goal in sections:
-            q = _correct(query, scene.link, between, goal, hold)
-            poses.append(between if q is None else q)
-            torques.append(_torque(query, scene, poses[-1]))
-    time = np.arange(len(poses)) / pace.rate
-    return ContactPath(time, np.array(poses), np.array(torques))
+    def to(self, start: FloatArray, end: FloatArray, depth: float, goal: float) -> list[FloatArray] | None:
+        """Knots after `start`, at rest at both ends, on the way to `end`; None if contact is lost."""
+        q, knots = start, []
+        for k in range(1, len(self._ease)):
+            moved = q + (self._ease[k] - self._ease[k - 1]) * (end - start)
+            corrected = self._correct(moved, depth + self._ease[k] * (goal - depth))
+            if corrected is None or not self._alone(corrected):
+                return None
+            q = corrected
+            if k % self._every == 0:
+                knots.append(q)
+        return knots
 
+    def torque(self, q: FloatArray) -> FloatArray:
+        """(nv,) external torque of the frictionless contact at `q`."""
+        contact = self._query.at(q, self._scene.link)
+        jacobian = self._robot.jacobian(q, contact.link, contact.point)[:3]
+        torque: FloatArray = -self._scene.stiffness * contact.penetration * (jacobian.T @ contact.normal)
+        return torque
 
-def _torque(query: ContactQuery, scene: TouchScene, q: FloatArray) -> FloatArray:
-    contact = query.near(q, scene.link, 0.0)
-    if contact is None:
-        return np.zeros(query.robot.nv)
-    jacobian = query.robot.jacobian(q, scene.link, contact.point)[:3]
-    torque: FloatArray = -scene.stiffness * contact.penetration * (jacobian.T @ contact.normal)
-    return torque
+    def _alone(self, q: FloatArray) -> bool:
+        others = (link for link in self._query.links if link != self._scene.link)
+        return all(self._query.near(q, link, 0.0) is None for link in others)
 
-
-def _correct(
-    query: ContactQuery, link: str, q: FloatArray, depth: float, hold: HeldLink | None
-) -> FloatArray | None:
-    """`q` changed by as little as brings `link` to `depth`; None where that is not found."""
-    for _ in range(_NEWTON):
-        contact = query.at(q, link)
-        missing = np.array([depth - contact.penetration])
-        rows = (contact.normal @ query.robot.jacobian(q, link, contact.point)[:3])[None]
-        if hold is not None:
-            task, error = hold.error(q)
-            rows, missing = np.vstack([rows, task]), np.concatenate([missing, error])
-        if float(np.abs(missing).max()) < _CLOSE:
-            return q
-        size = float((rows * rows).sum())
-        if not rows[0].any():  # the core is reached, or the contact turns no joint
-            return None
-        square = rows @ rows.T + 1e-8 * size * np.eye(len(rows))
-        change = rows.T @ np.linalg.solve(square, missing)
-        largest = float(np.abs(change).max())
-        if not np.isfinite(largest):
-            return None
-        q = q + change * min(1.0, _LARGEST / max(largest, 1e-12))
-    return None
+    def _correct(self, q: FloatArray, depth: float) -> FloatArray | None:
+        """`q` changed by as little as brings the link to `depth`; None where that is not found."""
+        for _ in range(_NEWTON):
+            contact = self._query.at(q, self._scene.link)
+            missing = np.array([depth - contact.penetration])
+            rows = (contact.normal @ self._robot.jacobian(q, contact.link, contact.point)[:3])[None]
+            if not rows.any():  # the obstacle's core is reached, or the contact turns no joint
+                return None
+            if self._hold is not None:
+                task, error = self._hold.error(q)
+                rows, missing = np.vstack([rows, task]), np.concatenate([missing, error])
+            if float(np.abs(missing).max()) < _CLOSE:
+                return q
+            square = rows @ rows.T
+            square += 1e-8 * np.trace(square) * np.eye(len(rows))
+            change = rows.T @ np.linalg.solve(square, missing)
+            largest = float(np.abs(change).max())
+            if not largest < _FARTHEST:
+                return None
+            q = q + change * min(1.0, _LARGEST / max(largest, 1e-12))
+        return None
