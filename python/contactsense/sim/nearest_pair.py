@@ -59,7 +59,7 @@ class ObstacleCore:
             rotation = obstacle.rotation
         else:
             self._shape = coal.Capsule(0.0, 2.0 * obstacle.half_length)
-            rotation = _frame_along(obstacle.axis)
+            rotation = obstacle.frame
         self._pose = coal.Transform3s(rotation, obstacle.center)
         self._request = coal.DistanceRequest()
         self._request.gjk_tolerance = _TOLERANCE
@@ -74,9 +74,3 @@ class ObstacleCore:
         first = np.array(result.getNearestPoint1(), dtype=np.float64)
         second = np.array(result.getNearestPoint2(), dtype=np.float64)
         return first, second if distance > 0.0 else first
-
-
-def _frame_along(axis: FloatArray) -> FloatArray:
-    first = np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
-    first /= np.linalg.norm(first)
-    return np.stack([first, np.cross(axis, first), axis], axis=1)

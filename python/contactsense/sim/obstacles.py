@@ -166,6 +166,13 @@ class CylinderObstacle(_Rounded):
         """Of the sphere about `center` that holds all of it [m]."""
         return self.half_length + self.radius
 
+    @property
+    def frame(self) -> FloatArray:
+        """(3, 3) rotation to the world from axes of which the third is the pole's."""
+        first = np.cross(self.axis, np.eye(3)[int(np.argmin(np.abs(self.axis)))])
+        first /= np.linalg.norm(first)
+        return np.stack([first, np.cross(self.axis, first), self.axis], axis=1)
+
     def project(self, points: FloatArray) -> FloatArray:
         along = np.clip((points - self.center) @ self.axis, -self.half_length, self.half_length)
         nearest: FloatArray = self.center + along[:, None] * self.axis

@@ -24,6 +24,8 @@ _RANGE = 0.9
 _TRIES = 2000
 # Points of the surface tried in one pose.
 _POINTS = 4
+# Of edges and poles out of the tangent plane, at most [rad].
+_TILT = 0.15
 # A pressed obstacle's rounding must not be used up [share].
 _DEEPEST = 0.7
 
@@ -59,7 +61,7 @@ def touch_scene(
     radius_range: tuple[float, float] = (0.02, 0.1),
     stiffness_range: tuple[float, float] = (3e3, 3e3),
     least_torque: float = 0.5,
-    clearance: float = 0.02,
+    clearance: float = 0.005,
     seed: int = 0,
 ) -> TouchScene:
     """A random pose, a random point of `link`, and an obstacle that presses there and touches nothing else.
@@ -71,7 +73,7 @@ def touch_scene(
     Args:
         model: of the same robot; gives the joints' limits, the middle 90 % of which is drawn from (a turn
             about zero where there are none).
-        kind: "sphere"; "cube", with an edge towards the link; "cylinder", a pole tangent to it in a random
+        kind: "sphere"; "cube", with an edge towards the link; "cylinder", a pole across it in a random
             way.
         q: (nq,) this pose instead of a random one.
         force_range: uniform [N].
@@ -130,7 +132,13 @@ def _place(
     point = pose[:3, :3] @ sample.points[0] + pose[:3, 3]
     normal = pose[:3, :3] @ sample.normals[0]
     across = np.cross(normal, rng.normal(size=3))
+    # Not quite tangent: along a flat face, any point of the line would be as deep as the others.
     across /= np.linalg.norm(across)
+    tilt = rng.uniform(-_TILT, _TILT)
+    across = np.cos(tilt) * across + np.sin(tilt) * normal
+    if kind != "sphere":
+        normal = normal - (normal @ across) * across
+        normal /= np.linalg.norm(normal)
     if kind == "sphere":
         ball = SphereObstacle(point + (size - depth) * normal, size)
         return ball if depth < _DEEPEST * size else None
