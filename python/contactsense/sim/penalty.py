@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+import pinocchio as pin
 
 from contactsense import Robot
 from contactsense.errors import InputError
@@ -12,6 +15,7 @@ from contactsense.errors import InputError
 from ._arrays import FloatArray, not_negative, positive
 from .arm import SimulatedRobot
 from .deepest import ContactQuery, DeepestPoint
+from .noise import TorqueNoise
 from .obstacles import Obstacle
 
 
@@ -83,12 +87,24 @@ class PenaltyContact:
             arm.apply_force(contact.link, contact.point, contact.force)
         return forces
 
-    def torque(self, q: FloatArray, forces: tuple[ContactForce, ...]) -> FloatArray:
-        """(nv,) external joint torque of `forces` at `q`: the sum of `J^T F`."""
-        total = np.zeros(self.robot.nv)
-        for contact in forces:
-            total += self.robot.jacobian(q, contact.link, contact.point)[:3].T @ contact.force
-        return total
+    def arm(self, model: pin.Model, *, dt: float = 0.001, noise: TorqueNoise | None = None) -> SimulatedRobot:
+        """A simulated robot to `apply` the forces to."""
+        return SimulatedRobot(model, dt=dt, noise=noise)
+
+    def present(self, arm: SimulatedRobot) -> tuple[ContactForce, ...]:
+        """The forces on `arm` as it is now."""
+        return self.forces(arm.q, arm.v)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain values of its settings."""
+        return {
+            "contact": "penalty",
+            "obstacle": self.obstacle.to_dict(),
+            "stiffness": self.stiffness,
+            "friction": self.friction,
+            "dissipation": self.dissipation,
+            "slip_speed": self.slip_speed,
+        }
 
     def _force(self, q: FloatArray, v: FloatArray, contact: DeepestPoint) -> ContactForce:
         depth = contact.penetration
@@ -105,3 +121,11 @@ class PenaltyContact:
             slip = velocity - inward * contact.normal
             force -= self.friction * size * slip / np.hypot(np.linalg.norm(slip), self.slip_speed)
         return ContactForce(contact.link, contact.point, contact.normal, depth, force)
+
+
+def joint_torque(robot: Robot, q: FloatArray, forces: Iterable[ContactForce]) -> FloatArray:
+    """(nv,) external joint torque of `forces` at `q`: the sum of `J^T F` [Nm]."""
+    total = np.zeros(robot.nv)
+    for contact in forces:
+        total += robot.jacobian(q, contact.link, contact.point)[:3].T @ contact.force
+    return total
