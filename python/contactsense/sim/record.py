@@ -74,7 +74,7 @@ def record_run(
         settings: added to those of the record.
 
     Raises:
-        InputError: names the argument; also if the obstacle's core is reached.
+        InputError: names the argument; also if the obstacle's core is reached, or the arm becomes unstable.
     """
     ticks = round(1.0 / (positive("rate", rate) * positive("dt", dt)))
     if ticks < 1 or abs(ticks * dt * rate - 1.0) > 1e-6:
@@ -107,6 +107,8 @@ def record_run(
                 felt = robot.inverse_dynamics(q, still, still) - measured.tau_mean
             true = joint_torque(robot, q, forces[-1])
             rows.append((np.array([tick * dt]), q, v, measured.tau_mean, felt, true))
+    if any(int(warning.number) for warning in arm.mj_data.warning):
+        raise InputError("controller: the simulated arm has become unstable; softer control may hold it")
     time, q, v, tau, felt, true = (np.array(column) for column in zip(*rows, strict=True))
     offset = np.zeros_like(true) if error is None else error.measure(true) - true
     plain = contact.to_dict() | {
