@@ -74,7 +74,7 @@ def test_scenes_follow_seed_and_arguments() -> None:
     ranges = {"radius_range": (0.05, 0.05), "force_range": (20.0, 20.0), "stiffness_range": (1e4, 2e4)}
     scene = touch_scene(robot, model, "iiwa_link_3", q=one.q, seed=1, **ranges)
     np.testing.assert_array_equal(scene.q, one.q)
-    assert scene.obstacle.radius == 0.05
+    assert scene.obstacle.radius == pytest.approx(0.05)
     assert 1e4 <= scene.stiffness <= 2e4
     assert np.linalg.norm(scene.force) == pytest.approx(20.0)
     for options, name in [
@@ -194,7 +194,7 @@ def test_quasi_static_runs_are_consistent() -> None:
     rough = record_quasi_static(robot, scene.contact(robot, friction=0.2), path.time, path.q)
     along = -(rough.force * rough.normal).sum(axis=1)
     across = np.linalg.norm(rough.force + along[:, None] * rough.normal, axis=1)
-    assert across[0] == 0.0
+    assert across[0] < 1e-12
     assert (across <= 0.2 * along + 1e-9).all()
     assert across.max() > 0.19 * along.max()
     # Away from the obstacle nothing touches.
@@ -204,7 +204,7 @@ def test_quasi_static_runs_are_consistent() -> None:
     assert not far.true_external_torque[1].any()
     assert np.isnan(far.point[1]).all()
     for arguments in (([1.0, 0.0], path.q[:2]), ([0.0], path.q[:2]), ([0.0, 1.0], path.q[:2] * np.nan)):
-        with pytest.raises(InputError, match="time|q must"):
+        with pytest.raises(InputError, match=r"time|q must"):
             record_quasi_static(robot, scene.contact(robot), *arguments)
 
 
@@ -379,7 +379,7 @@ def test_malformed_files_are_refused(tmp_path: Path) -> None:
         "short": {"force": arrays["force"][:0]},
         "flat": {"point": arrays["point"][0]},
         "text": {"q": np.array([["a"] * 7])},
-        "infinite": {"tau": arrays["tau"] * np.inf},
+        "infinite": {"tau": arrays["tau"] + np.inf},
         "wide": {"tau": np.zeros((1, 8))},
         "settings": {"settings": np.array("{")},
         "list": {"settings": np.array("[]")},
