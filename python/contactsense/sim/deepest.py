@@ -36,7 +36,7 @@ class DeepestPoint:
 
     link: str
     point: FloatArray  # (3,) on the link's surface [m]
-    normal: FloatArray  # (3,) unit, from the link towards the obstacle
+    normal: FloatArray  # (3,) unit, from the link towards the obstacle; zero where its core is reached
     penetration: float  # [m], negative: the gap
 
 
@@ -106,9 +106,10 @@ class ContactQuery:
             return _at_center(surface, link, rotation, origin, self.obstacle)
         body = link_body(self.robot, link, surface)
         on_link, on_core = self._shape.nearest(body, rotation, origin)
-        if np.linalg.norm(on_core - on_link) > self.obstacle.rounding + margin + _TESSELLATION:
+        gap = float(np.linalg.norm(on_core - on_link))
+        if gap > self.obstacle.rounding + margin + _TESSELLATION:
             return None
-        if body.exact:
+        if body.exact and gap > 0.0:
             on_link, on_core = self._polish(surface, rotation, origin, on_core)
         arm = on_core - on_link
         distance = float(np.linalg.norm(arm))

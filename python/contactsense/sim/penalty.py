@@ -18,6 +18,9 @@ from .deepest import ContactQuery, DeepestPoint
 from .noise import TorqueNoise
 from .obstacles import Obstacle
 
+# Time in which friction must not reverse the slip [s].
+_TICK = 1e-3
+
 
 @dataclass(frozen=True)
 class ContactForce:
@@ -44,7 +47,8 @@ class PenaltyContact:
         stiffness: [N/m].
         friction: coefficient; 0 = frictionless.
         dissipation: [s/m].
-        slip_speed: [m/s].
+        slip_speed: at least [m/s]. Where friction within 1 ms could turn the slip of the light link round, as
+            explicit integration would make it do for ever, it is raised to that speed.
         links: that can touch; by default all that have a surface and move.
 
     Raises:
@@ -106,9 +110,15 @@ class PenaltyContact:
             "slip_speed": self.slip_speed,
         }
 
+    def _mobility(self, q: FloatArray, contact: DeepestPoint) -> float:
+        """The most that a force of 1 N across the normal accelerates the touched point [1/kg]."""
+        jacobian = self.robot.jacobian(q, contact.link, contact.point)[:3]
+        across = jacobian - np.outer(contact.normal, contact.normal @ jacobian)
+        return float(np.linalg.norm(across @ np.linalg.solve(self.robot.mass_matrix(q), across.T), 2))
+
     def _force(self, q: FloatArray, v: FloatArray, contact: DeepestPoint) -> ContactForce:
         depth = contact.penetration
-        if self.obstacle.rounding - abs(depth) < 1e-9 and depth > 0:
+        if not contact.normal.any():
             raise InputError(
                 f"stiffness: '{contact.link}' is {depth:.4g} m deep, as deep as the obstacle's rounding;"
                 " the contact must be stiffer, or the obstacle rounder"
@@ -119,7 +129,8 @@ class PenaltyContact:
         force = -size * contact.normal
         if self.friction > 0.0:
             slip = velocity - inward * contact.normal
-            force -= self.friction * size * slip / np.hypot(np.linalg.norm(slip), self.slip_speed)
+            speed = max(self.slip_speed, self.friction * size * self._mobility(q, contact) * _TICK)
+            force -= self.friction * size * slip / np.hypot(np.linalg.norm(slip), speed)
         return ContactForce(contact.link, contact.point, contact.normal, depth, force)
 
 
