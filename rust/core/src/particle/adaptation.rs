@@ -14,8 +14,10 @@ const LEAST_APART: f64 = 3e-4;
 const MOST_APART: f64 = 0.02;
 /// Share of particles that are drawn anew from the whole surface, where all is explained and where nothing is.
 const FRESH: [f64; 2] = [0.01, 0.3];
-/// Updates after which a contact that one joint, or two, feel tells little new.
-const FEW_JOINTS: [f64; 2] = [0.3, 2.0];
+/// Torques that are off by more are not noise, in units of its variance.
+const MOST_VARIANCE: f64 = 30.0;
+/// Updates after which a contact that one joint, two or three feel tells little new.
+const FEW_JOINTS: [f64; 3] = [0.3, 1.0, 10.0];
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Adaptation {
@@ -39,7 +41,7 @@ impl Adaptation {
     /// errors of the model do not average out where nothing moves.
     pub fn sharpest(&mut self, moved: f64, active_joints: usize, age: u64) -> f64 {
         let news = (moved / NEW_POSE).clamp(STANDING, 1.0);
-        // The torques of one or two joints over a small motion are smooth functions of as many angles: they tell a few
+        // The torques of few joints over a small motion are smooth functions of as many angles: they tell a few
         // numbers. More samples of them would favour the places where torques depend least on the point.
         let fade = FEW_JOINTS
             .get(active_joints.saturating_sub(1))
@@ -47,6 +49,11 @@ impl Adaptation {
         self.backlog = (self.backlog + news * fade).min(fade);
         self.sharpest = self.variance.unwrap_or(1.0);
         self.sharpest / self.backlog
+    }
+
+    /// Counts the present measurement as new.
+    pub fn begin(&mut self) {
+        self.backlog = 1.0;
     }
 
     /// Least share of effective particles.
@@ -64,7 +71,7 @@ impl Adaptation {
     pub fn learn(&mut self, left: f64, active_joints: usize) {
         // One degree of freedom is the force's.
         let freedom = active_joints.saturating_sub(1).max(1) as f64;
-        let found = (left / freedom).max(1.0);
+        let found = (left / freedom).clamp(1.0, MOST_VARIANCE);
         self.variance = Some(match self.variance {
             Some(variance) => variance + NEWEST * (found - variance),
             None => found,

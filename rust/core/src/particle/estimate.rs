@@ -151,7 +151,7 @@ impl ContactEstimate {
 }
 
 /// Standard deviation of a point that particles cannot undercut [m].
-const RESOLUTION: f64 = 5e-4;
+const RESOLUTION: f64 = 5e-3;
 /// Less probable links and modes are not sure.
 const SURE_LINK: f64 = 0.8;
 const SURE_MODE: f64 = 0.7;

@@ -62,10 +62,10 @@ impl Schedule {
 /// A motion of the robot after which the model's noise is at its full size [m].
 const NEW_POSE: f64 = 0.005;
 /// Adaptive noise of a force, relative, and of a distance [m].
-const FORCE_NOISE: f64 = 0.02;
+const FORCE_NOISE: f64 = 0.04;
 const DISTANCE_NOISE: f64 = 1e-4;
 /// Share of particles whose radius is drawn anew: a real obstacle is no sphere.
-const REDRAW: f64 = 0.05;
+const REDRAW: f64 = 0.2;
 
 /// Noise and sharpness of one update.
 #[derive(Debug, Clone, Copy)]
@@ -85,6 +85,11 @@ pub(super) struct Noise {
 }
 
 impl Noise {
+    /// Nothing moves.
+    pub fn none() -> Self {
+        Noise { redraw: 0.0, force: 0.0, stiffness: 0.0, distance: 0.0, point: None, sharpness: None }
+    }
+
     /// At an update since the particles were spread, after a motion [m].
     pub fn at(options: &FilterOptions, update: u64, moved: f64) -> Self {
         let share = (moved / NEW_POSE).min(1.0);

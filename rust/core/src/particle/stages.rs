@@ -45,7 +45,7 @@ impl Stages {
     /// Draws all particles anew by their weights, and moves copies apart.
     pub fn resampling(&mut self) {
         let noise = self.noise();
-        self.0.resample(&noise, self.0.frames.displacement(), 0.0);
+        self.0.resample(&noise, self.0.frames.displacement(), 0.01);
     }
 
     /// Finds the modes and says the estimate.

@@ -67,6 +67,8 @@ pub(super) struct Swarm {
     pub age: u64,
     /// Updates in a row that no particle explained.
     unexplained: u32,
+    /// Whether the particles were weighed a second time within this update.
+    rescued: bool,
 }
 
 impl Swarm {
@@ -93,6 +95,7 @@ impl Swarm {
             step: 0,
             age: 0,
             unexplained: 0,
+            rescued: false,
             robot,
             options,
         })
@@ -132,26 +135,46 @@ impl Swarm {
         }
         let noise = Noise::at(&self.options, self.age, moved);
         self.predict(&noise);
-        let effective = self.weigh(moved, &noise);
+        let mut effective = self.weigh(moved, &noise);
+        let mut event = event;
+        if self.felt && self.age > 0 && noise.sharpness.is_none() && self.left_over().is_much(RESCUE) {
+            (effective, event) = self.rescue(&noise, moved, event);
+        }
         let left = self.conclude(event, effective);
         if effective < RESAMPLE * self.particles.len() as f64 {
-            self.resample(&noise, moved, left);
+            self.resample(&noise, moved, Adaptation::fresh_share(left.share));
         }
+        self.rescued = false;
         self.step += 1;
         self.age += 1;
         self.estimate.updates = self.step;
     }
 
-    /// Says what the weighted particles show; returns the part of the torque that the best one leaves over.
-    pub fn conclude(&mut self, event: Event, effective: f64) -> f64 {
+    /// Nothing explains the torque, as after a jump of the contact: looks for it on the whole surface at once, beside what
+    /// was known. Returns how many particles are effective then, and what happened.
+    fn rescue(&mut self, noise: &Noise, moved: f64, event: Event) -> (f64, Event) {
+        let count = self.particles.len();
+        let kept = self.resample(noise, moved, RESCUERS);
+        self.frames.stand();
+        self.adaptation.begin();
+        self.rescued = true;
+        self.predict(&Noise::none());
+        let effective = self.weigh(0.0, &Noise::none());
+        let found: f64 = self.weights[kept..count].iter().sum();
+        (effective, if found > 0.5 { Event::Changed } else { event })
+    }
+
+    /// Says what the weighted particles show.
+    pub fn conclude(&mut self, event: Event, effective: f64) -> Left {
         self.modes.find(&self.robot, &self.frames, &self.particles, &self.weights);
-        let left = self.judge();
-        self.tell(event, effective, left);
+        let left = self.left_over();
+        self.adaptation.learn(left.misfit, self.active_joints());
+        self.tell(event, effective, &left);
         left
     }
 
     fn stream(&self, purpose: Purpose) -> Stream {
-        self.random.fork(4 * self.step + purpose as u64)
+        self.random.fork(8 * self.step + 4 * self.rescued as u64 + purpose as u64)
     }
 
     fn threads(&self) -> usize {
@@ -254,33 +277,29 @@ impl Swarm {
             .count()
     }
 
-    /// Learns from what the particles leave over; returns the best one's part of the measured torque.
-    fn judge(&mut self) -> f64 {
-        let measured = self.frames.measured;
+    /// What the best particle leaves over.
+    fn left_over(&self) -> Left {
         let (mut best, mut greatest) = (0, -1.0);
         for (k, &weight) in self.weights.iter().enumerate() {
             if weight > greatest {
                 (best, greatest) = (k, weight);
             }
         }
-        let left = misfit(measured, &Belief::of(&self.particles, best));
-        self.adaptation.learn(left, self.active_joints());
-        if measured > 0.0 {
-            (left / measured).sqrt()
-        } else {
-            0.0
-        }
+        let measured = self.frames.measured;
+        let misfit = misfit(measured, &Belief::of(&self.particles, best));
+        let share = if measured > 0.0 { (misfit / measured).sqrt() } else { 0.0 };
+        Left { misfit, share, joints: self.torque.len() }
     }
 
-    fn tell(&mut self, event: Event, effective: f64, left: f64) {
-        let explained = left < UNEXPLAINED;
+    fn tell(&mut self, event: Event, effective: f64, left: &Left) {
+        let explained = !left.is_much(UNEXPLAINED);
         self.unexplained = if explained { 0 } else { self.unexplained + 1 };
         let norm = self.torque.iter().map(|torque| torque * torque).sum::<f64>().sqrt();
         let Self { estimate, modes, frames, .. } = self;
         estimate.clear();
         estimate.event = event;
         estimate.effective_samples = effective;
-        estimate.residual = left * norm;
+        estimate.residual = left.share * norm;
         estimate.explained = explained;
         if self.felt {
             let springy = self.options.motion == Motion::Curvature;
@@ -288,9 +307,10 @@ impl Swarm {
         }
     }
 
-    pub fn resample(&mut self, noise: &Noise, moved: f64, left: f64) {
+    /// Draws particles anew, a share of them from the whole surface: those behind the others, whose number is returned.
+    pub fn resample(&mut self, noise: &Noise, moved: f64, fresh_share: f64) -> usize {
         let count = self.particles.len();
-        let anew = ((Adaptation::fresh_share(left) * count as f64) as usize).min(count - 1);
+        let anew = ((fresh_share * count as f64) as usize).min(count - 1);
         let kept = count - anew;
         let offset = self.stream(Purpose::Comb).uniform(0);
         systematic(&self.weights, offset, &mut self.parents[..kept]);
@@ -313,6 +333,7 @@ impl Swarm {
         }
         self.weights.fill(1.0 / count as f64);
         self.rejuvenate();
+        kept
     }
 
     fn rejuvenate(&mut self) {
@@ -330,7 +351,26 @@ impl Swarm {
     }
 }
 
+/// Torque that is left over.
+pub(super) struct Left {
+    /// Its squared norm in units of the noise.
+    pub misfit: f64,
+    /// Its part of what was measured.
+    pub share: f64,
+    joints: usize,
+}
+
+impl Left {
+    /// Whether it is more than a share of the torque, and more than noise.
+    fn is_much(&self, share: f64) -> bool {
+        self.share > share && self.misfit > 9.0 * self.joints as f64
+    }
+}
+
 /// Above this share of the torque that the best particle leaves over, nothing is explained.
 const UNEXPLAINED: f64 = 0.5;
+/// Above this one the contact is looked for on the whole surface, by a share of the particles.
+const RESCUE: f64 = 0.3;
+const RESCUERS: f64 = 0.5;
 /// Share of the robot's motion that a contact held to be fixed moves.
 const SLIP: f64 = 0.5;
