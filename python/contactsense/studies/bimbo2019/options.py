@@ -1,0 +1,26 @@
+"""What is run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ... import InputError
+
+
+@dataclass(frozen=True)
+class Options:
+    """Counts, seeds, and the robot."""
+
+    robot: str = "iiwa14"  # described in the package, or a URDF file
+    package_dirs: tuple[str, ...] = ()
+    trials: int = 5  # a link
+    particles: int = 10_000
+    seed: int = 0
+    links: tuple[str, ...] = ()  # default: all that move and have a surface
+
+    def __post_init__(self) -> None:
+        for name in ("trials", "particles"):
+            if getattr(self, name) < 1:
+                raise InputError(f"{name}: must be at least 1, not {getattr(self, name)}")
+        if self.seed < 0:
+            raise InputError(f"seed: must not be negative, not {self.seed}")
