@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from os.path import commonprefix
 
 import numpy as np
 from rich import box
@@ -113,11 +112,11 @@ def _confidence(study: Study, experiment: Experiment) -> Table:
 
 
 def _short(link: str | None, study: Study) -> str:
-    """Without what all names begin with."""
+    """Without a first word that all names share."""
     if link is None:
         return "all"
-    start = commonprefix(study.links) if len(study.links) > 1 else ""
-    return link[start.rfind("_link_") + 1 if "_link_" in start else 0 :]
+    shared = len({each.partition("_")[0] for each in study.links}) == 1
+    return link.partition("_")[2] or link if shared else link
 
 
 def percent(share: float) -> str:
