@@ -1,0 +1,119 @@
+"""Soft control: joints, or the hand, held by springs and dampers, as arms for work beside people do."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import ArrayLike
+
+from contactsense.errors import InputError
+
+from ._arrays import FloatArray, not_negative, positive, vector
+
+_AXES = pin.LOCAL_WORLD_ALIGNED
+
+
+class ImpedanceController:
+    """`tau = K (q_d - q) - D v + C v + g`, for a fixed base.
+
+    Args:
+        model: Pinocchio model, all joints with one coordinate.
+        stiffness: K, one for all or (nv,) [Nm/rad, N/m].
+        damping_ratio: gives `D_i = 2 damping_ratio sqrt(K_i M_ii(q))`.
+
+    Raises:
+        InputError: names the argument.
+    """
+
+    def __init__(self, model: pin.Model, *, stiffness: ArrayLike = 600.0, damping_ratio: float = 0.7) -> None:
+        _fixed(model)
+        self._model, self._data = model, model.createData()
+        self.stiffness = _gains("stiffness", stiffness, model.nv)
+        self.damping_ratio = not_negative("damping_ratio", damping_ratio)
+
+    def torque(
+        self, q: FloatArray, v: FloatArray, desired: FloatArray, feedforward: FloatArray | None = None
+    ) -> FloatArray:
+        """(nv,) motor torque [Nm] at `q`, `v`, drawn towards `desired` (nq,); plus `feedforward` (nv,)."""
+        mass = np.diagonal(pin.crba(self._model, self._data, q))
+        damping = 2.0 * self.damping_ratio * np.sqrt(self.stiffness * mass)
+        bias = pin.nonLinearEffects(self._model, self._data, q, v)
+        torque: FloatArray = self.stiffness * (desired - q) - damping * v + bias
+        return torque if feedforward is None else torque + feedforward
+
+
+class HandImpedanceController:
+    """A hand held by a spring in its six directions; the joints are drawn to `q_d` in what is left free.
+
+    `tau = J^T (K_x e - D_x J v) + N^T (K (q_d - q) - D v) + C v + g`, where the hand's pose error `e` is that to
+    its pose at `q_d`, and `N = I - M^-1 J^T (J M^-1 J^T)^-1 J` projects on motions that leave the hand where it
+    is (Khatib 1987). An arm with seven joints can so move its elbow.
+
+    Args:
+        model: Pinocchio model, all joints with one coordinate.
+        link: the hand.
+        translation: stiffness [N/m].
+        rotation: stiffness [Nm/rad].
+        stiffness: K of the joints, in the null space, one for all or (nv,) [Nm/rad].
+        damping_ratio: of both.
+
+    Raises:
+        InputError: names the argument.
+    """
+
+    def __init__(
+        self,
+        model: pin.Model,
+        link: str,
+        *,
+        translation: float = 2000.0,
+        rotation: float = 200.0,
+        stiffness: ArrayLike = 300.0,
+        damping_ratio: float = 0.7,
+    ) -> None:
+        _fixed(model)
+        if not model.existFrame(link, pin.FrameType.BODY):
+            raise InputError(f"link: no link '{link}'")
+        self._model, self._data = model, model.createData()
+        self._frame = model.getFrameId(link, pin.FrameType.BODY)
+        sizes = [positive("translation", translation)] * 3 + [positive("rotation", rotation)] * 3
+        self._hand_stiffness = np.array(sizes)
+        self.stiffness = _gains("stiffness", stiffness, model.nv)
+        self.damping_ratio = not_negative("damping_ratio", damping_ratio)
+
+    def torque(
+        self, q: FloatArray, v: FloatArray, desired: FloatArray, feedforward: FloatArray | None = None
+    ) -> FloatArray:
+        """(nv,) motor torque [Nm] at `q`, `v`, with the hand drawn to where it is at `desired` (nq,)."""
+        model, data = self._model, self._data
+        pin.forwardKinematics(model, data, desired)
+        goal = pin.updateFramePlacement(model, data, self._frame).copy()
+        pin.computeAllTerms(model, data, q, v)
+        here = pin.updateFramePlacement(model, data, self._frame)
+        jacobian = pin.getFrameJacobian(model, data, self._frame, _AXES)
+        turn = here.rotation @ pin.log3(here.rotation.T @ goal.rotation)
+        error = np.concatenate([goal.translation - here.translation, turn])
+        mass = np.triu(data.M) + np.triu(data.M, 1).T
+        by_mass = np.linalg.solve(mass, jacobian.T)
+        # The small term keeps a singular arm, whose hand cannot move some way, from blowing up.
+        inertia = np.linalg.inv(jacobian @ by_mass + 1e-4 * np.eye(6))
+        ratio = 2.0 * self.damping_ratio
+        hand_damping = ratio * np.sqrt(self._hand_stiffness * np.diagonal(inertia))
+        wrench = self._hand_stiffness * error - hand_damping * (jacobian @ v)
+        damping = ratio * np.sqrt(self.stiffness * np.diagonal(mass))
+        free = self.stiffness * (desired - q) - damping * v
+        free -= jacobian.T @ (inertia @ (by_mass.T @ free))
+        torque: FloatArray = jacobian.T @ wrench + free + data.nle
+        return torque if feedforward is None else torque + feedforward
+
+
+def _fixed(model: pin.Model) -> None:
+    if model.nq != model.nv:
+        raise InputError("model: impedance control needs a fixed base and joints with one coordinate each")
+
+
+def _gains(name: str, value: ArrayLike, size: int) -> FloatArray:
+    gains = vector(name, np.broadcast_to(np.asarray(value, dtype=np.float64), (size,)), size)
+    if (gains <= 0).any():
+        raise InputError(f"{name} must be positive")
+    return gains

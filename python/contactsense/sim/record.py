@@ -1,0 +1,110 @@
+"""Contact runs in physics: an arm under impedance control explores in contact, simulated with MuJoCo."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, Protocol
+
+import numpy as np
+import pinocchio as pin
+
+from contactsense import MomentumObserver, Robot
+from contactsense.errors import InputError
+
+from ._arrays import FloatArray, positive
+from .arm import SimulatedRobot
+from .disturbance import TorqueError
+from .exploration import ContactPath
+from .impedance import ImpedanceController
+from .noise import TorqueNoise
+from .penalty import ContactForce, PenaltyContact
+from .quasi_static import contact_run, settings_of
+from .run import ContactRun
+
+
+class SoftController(Protocol):
+    """`ImpedanceController`, `HandImpedanceController`, or another."""
+
+    def torque(
+        self, q: FloatArray, v: FloatArray, desired: FloatArray, feedforward: FloatArray | None = None
+    ) -> FloatArray: ...
+
+
+def record_run(
+    robot: Robot,
+    model: pin.Model,
+    contact: PenaltyContact,
+    path: ContactPath,
+    *,
+    controller: SoftController | None = None,
+    true_model: pin.Model | None = None,
+    error: TorqueError | None = None,
+    sensor_noise: TorqueNoise | None = None,
+    external_torque: Literal["observer", "static"] = "observer",
+    observer_gain: float = 50.0,
+    rate: float = 50.0,
+    dt: float = 0.001,
+    settings: dict[str, Any] | None = None,
+) -> ContactRun:
+    """Simulate an arm that follows `path` softly, pressing on the obstacle; record at `rate`.
+
+    It starts at rest at the path's first pose. The controller is fed the path's poses, and the torques with which
+    the contact is planned to push back: a soft arm alone would stop short of the obstacle. Forces are those of
+    `contact`, at the deepest point of the true surface, new in every tick.
+
+    Args:
+        robot: what is known of the arm: the observer uses it.
+        model: the same for the controller.
+        contact: spring between the true surface and the obstacle.
+        path: see `joint_exploration` and its like.
+        controller: `ImpedanceController(model)` by default.
+        true_model: the arm as it is (see `perturbed_model`), which is simulated; `model` by default.
+        error: added to the recorded external torque, once a sample.
+        sensor_noise: of the measured motor torques at every tick; what of it gets through depends on
+            `external_torque`.
+        external_torque: "observer": `MomentumObserver`; "static": `g(q) - tau`, right while the arm is slow.
+        observer_gain: [1/s].
+        rate: of the samples [Hz]; a whole number of ticks must fit between them.
+        dt: control tick and simulation step [s].
+        settings: added to those of the record.
+
+    Raises:
+        InputError: names the argument; also if the obstacle's core is reached.
+    """
+    ticks = round(1.0 / (positive("rate", rate) * positive("dt", dt)))
+    if ticks < 1 or abs(ticks * dt * rate - 1.0) > 1e-6:
+        raise InputError(f"rate must leave a whole number of ticks of {dt:g} s between samples, not {rate:g} Hz")
+    if external_torque not in ("observer", "static"):
+        raise InputError(f"external_torque must be 'observer' or 'static', not {external_torque!r}")
+    if (model.nq, model.nv) != (robot.nq, robot.nv):
+        raise InputError(f"model: has {model.nq} coordinates, the robot {robot.nq}")
+    control = controller or ImpedanceController(model)
+    arm = SimulatedRobot(true_model or model, dt=dt, noise=sensor_noise)
+    observer = MomentumObserver(robot, dt=dt, gain=observer_gain)
+    arm.reset(path.q[0])
+    still = np.zeros(robot.nv)
+    rows: list[tuple[FloatArray, ...]] = []
+    forces: list[tuple[ContactForce, ...]] = []
+    for tick in range(round(float(path.time[-1]) / dt) + 1):
+        q, v = arm.q, arm.v
+        desired, planned = path.at(tick * dt)
+        arm.clear_forces()
+        contact.apply(arm)
+        measured = arm.step(control.torque(q, v, desired, -planned))
+        felt = observer.update(q, v, measured.tau_mean)
+        if tick % ticks == 0:
+            if external_torque == "static":
+                felt = robot.inverse_dynamics(q, still, still) - measured.tau_mean
+            forces.append(contact.forces(q, v))
+            true = contact.torque(q, forces[-1])
+            rows.append((np.array([tick * dt]), q, v, measured.tau_mean, felt, true))
+    time, q, v, tau, felt, true = (np.array(column) for column in zip(*rows, strict=True))
+    offset = np.zeros_like(true) if error is None else error.measure(true) - true
+    plain = settings_of(contact, error) | {
+        "recorder": "physics",
+        "external_torque": external_torque,
+        "observer_gain": observer_gain,
+        "rate": rate,
+        "dt": dt,
+    }
+    plain |= settings or {}
+    return contact_run(time[:, 0], q, v, tau - offset, felt + offset, true, forces, plain)
