@@ -86,7 +86,7 @@ def _trial(item: Item) -> Trial:
     arm, experiment = load_arm(options), BY_NAME[name]
     seed = trial_seed(options, name, link, number)
     try:
-        recorded = record(arm, experiment, link, seed)
+        recorded = record(arm, experiment, link, number, seed)
     except InputError:
         return Trial(name, link, number, ())
     outcomes = [track(arm, recorded, kind, options, seed) for kind in experiment.filters]

@@ -1,50 +1,131 @@
-"""Stand-in."""
+"""The recorded runs: an arm under impedance control leans on an obstacle and moves a little, in MuJoCo."""
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import Any
+from dataclasses import fields
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import InputError
-from ..sampling import random_configuration
+from ...sim.disturbance import perturbed_model
+from ...sim.exploration import (
+    ContactPath,
+    Pace,
+    joint_exploration,
+    null_space_exploration,
+    sliding_exploration,
+)
+from ...sim.penalty import PenaltyContact
+from ...sim.quasi_static import record_quasi_static
+from ...sim.record import record_run
+from ...sim.run import ContactRun
+from ...sim.scene import TouchScene, touch_scene
 from .arm import Arm
 from .experiments import Experiment
 
+FloatArray = NDArray[np.float64]
 
-def record(arm: Arm, experiment: Experiment, link: str, seed: int) -> Any:
-    rng = np.random.default_rng(seed)
-    robot = arm.robot
-    steps = 41
-    for _ in range(500):
-        radius, stiffness, force = 0.05, 2000.0, 20.0
-        q = random_configuration(robot, rng)
-        samples, pose = robot.surface(link).sample(1, seed=int(rng.integers(2**31))), robot.link_pose(q, link)
-        normal = pose[:3, :3] @ samples.normals[0]
-        centre = pose[:3, :3] @ samples.points[0] + pose[:3, 3] + (radius - force / stiffness) * normal
-        sway = rng.normal(size=(2, robot.nv))
-        phases = 2 * np.pi * np.arange(steps) / steps
-        waves = np.stack([np.sin(phases), np.sin(2 * phases)])
-        qs = q + np.deg2rad(3.0) * (waves.T @ sway)
-        rows = [_press(arm, link, one, centre, radius, stiffness) for one in qs]
-        good = [row for row in rows if row is not None]
-        if len(good) == steps:
-            torque, point, normals, forces = map(np.array, zip(*good, strict=True))
-            return SimpleNamespace(
-                q=qs, external_torque=torque, point=point, normal=normals, force=forces, link=(link,) * steps
-            )
-    raise InputError("none")
+COLUMNS = [field.name for field in fields(ContactRun) if field.name != "settings"]
+TRIES = 10
+RATE = 25.0  # of the filter's updates [Hz]
+PACES = {  # some 10 s each
+    "random": Pace(motions=40, duration=0.25),
+    "deliberate": Pace(motions=25, duration=0.4),
+    "null space": Pace(motions=25, duration=0.4),
+}
+ELBOW = np.deg2rad(12.0)
+OBSERVER_GAIN = 200.0  # [1/s]
+SLIP_SPEED = 0.02  # of the regularised friction [m/s]
+SETTLED = 2  # samples until the observer knows the torque
+LEAST = 0.6  # share of the run that must be in contact
+STIFFNESS = (1e3, 1e4)  # of the contact [N/m]
+# Bent and clear of singular poses: shares of half of each joint's range, from its middle.
+POSES = (
+    (0.15, 0.3, -0.1, -0.5, 0.2, 0.4, 0.0),
+    (-0.3, -0.35, 0.2, 0.55, -0.3, -0.5, 0.3),
+    (0.5, 0.45, 0.35, -0.4, -0.25, 0.6, -0.3),
+    (-0.6, -0.25, -0.3, -0.65, 0.4, -0.35, 0.5),
+    (0.0, 0.5, 0.15, 0.6, -0.4, 0.45, 0.1),
+)
 
 
-def _press(arm: Arm, link: str, q: Any, centre: Any, radius: float, stiffness: float) -> Any:
-    robot = arm.robot
-    pose = robot.link_pose(q, link)
-    closest = robot.surface(link).closest_points(((centre - pose[:3, 3]) @ pose[:3, :3])[None])
-    push = stiffness * (radius - closest.distances[0])
-    point = pose[:3, :3] @ closest.points[0] + pose[:3, 3]
-    force = push * (point - centre) / closest.distances[0]
-    torque = robot.jacobian(q, link, point)[:3].T @ force
-    if push < 1.0 or np.linalg.norm(torque) < 0.5 or force @ pose[:3, :3] @ closest.normals[0] > 0.0:
-        return None
-    return torque, point, -force / push, force
+def record(arm: Arm, experiment: Experiment, link: str, number: int, seed: int) -> ContactRun:
+    """One run in which `link` touches the obstacle from the first sample to the last.
+
+    Raises:
+        InputError: the link cannot be touched so.
+    """
+    cause: InputError | None = None
+    for chance in np.random.SeedSequence(seed).generate_state(TRIES).tolist():
+        try:
+            scene = _scene(arm, experiment, link, number, chance)
+            run = _record(arm, experiment, scene, _path(arm, experiment, scene, chance), chance)
+            return _in_contact(run)
+        except InputError as refused:
+            cause = refused
+    raise InputError(f"link: '{link}' does not keep a contact in {TRIES} scenes") from cause
+
+
+def _scene(arm: Arm, experiment: Experiment, link: str, number: int, seed: int) -> TouchScene:
+    chosen = experiment.setup == "deliberate"
+    return touch_scene(
+        arm.robot,
+        arm.model,
+        link,
+        kind=experiment.obstacle,
+        q=_pose(arm, number) if chosen else None,
+        force_range=(20.0, 40.0) if chosen else (5.0, 40.0),
+        stiffness_range=STIFFNESS,
+        least_torque=1.0 if chosen else 0.5,
+        seed=seed,
+    )
+
+
+def _pose(arm: Arm, number: int) -> FloatArray:
+    low = np.maximum(arm.model.lowerPositionLimit, -np.pi)
+    high = np.minimum(arm.model.upperPositionLimit, np.pi)
+    shares = np.resize(POSES[number % len(POSES)], arm.robot.nq)
+    pose: FloatArray = 0.5 * (low + high) + 0.5 * shares * (high - low)
+    return pose
+
+
+def _path(arm: Arm, experiment: Experiment, scene: TouchScene, seed: int) -> ContactPath:
+    pace = PACES[experiment.setup]
+    if experiment.setup == "random":
+        return joint_exploration(arm.robot, scene, pace=pace, seed=seed)
+    if experiment.setup == "deliberate":
+        return sliding_exploration(arm.robot, scene, pace=pace, seed=seed)
+    return null_space_exploration(arm.robot, scene, arm.links[-1], amplitude=ELBOW, pace=pace, seed=seed)
+
+
+def _record(arm: Arm, experiment: Experiment, scene: TouchScene, path: ContactPath, seed: int) -> ContactRun:
+    true_model = None
+    if experiment.model_error:
+        true_model = perturbed_model(arm.model, mass=experiment.model_error, seed=seed)
+    contact = PenaltyContact(
+        arm.robot,
+        scene.obstacle,
+        stiffness=scene.stiffness,
+        friction=experiment.friction,
+        slip_speed=SLIP_SPEED,
+    )
+    if not experiment.physics:
+        rows = slice(None, None, round(PACES[experiment.setup].rate / RATE))
+        return record_quasi_static(arm.robot, contact, path.time[rows], path.q[rows])
+    return record_run(
+        arm.robot, arm.model, contact, path, true_model=true_model, observer_gain=OBSERVER_GAIN, rate=RATE
+    )
+
+
+def _in_contact(run: ContactRun) -> ContactRun:
+    """From when the observer has settled to where the contact is lost first.
+
+    Raises:
+        InputError: that is too short.
+    """
+    held = [link == run.link[0] for link in run.link]
+    end = held.index(False) if False in held else len(held)
+    if end < LEAST * len(run):
+        raise InputError("the contact is lost")
+    return ContactRun(**{name: getattr(run, name)[SETTLED:end] for name in COLUMNS}, settings=run.settings)
