@@ -76,8 +76,6 @@ def perturbed_model(
         heavier, rounder = np.clip(1.0 + np.array([mass, inertia]) * rng.standard_normal(2), 0.5, 2.0)
         shift = centre * rng.standard_normal(3)
         changed.inertias[index] = pin.Inertia(
-            float(body.mass * heavier),
-            vector("centre", body.lever + shift, 3),
-            body.inertia * heavier * rounder,
+            float(body.mass * heavier), vector("centre", body.lever + shift, 3), body.inertia * heavier * rounder
         )
     return changed

@@ -240,10 +240,7 @@ def _path(
             sections = [(corners[0], depths[0])]
         else:
             sections = [
-                (
-                    corners[k - 1] + s * (corners[k] - corners[k - 1]),
-                    depths[k - 1] + s * (depths[k] - depths[k - 1]),
-                )
+                (corners[k - 1] + s * (corners[k] - corners[k - 1]), depths[k - 1] + s * (depths[k] - depths[k - 1]))
                 for s in ease
             ]
         for between, goal in sections:

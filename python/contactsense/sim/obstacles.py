@@ -101,10 +101,7 @@ class CubeObstacle(_Rounded):
             raise InputError("half_extents must be positive")
         object.__setattr__(self, "half_extents", extents)
         rotation = vector("rotation", np.asarray(self.rotation, dtype=np.float64).ravel(), 9).reshape(3, 3)
-        if (
-            not np.allclose(rotation @ rotation.T, np.eye(3), rtol=0, atol=1e-9)
-            or np.linalg.det(rotation) < 0
-        ):
+        if not np.allclose(rotation @ rotation.T, np.eye(3), rtol=0, atol=1e-9) or np.linalg.det(rotation) < 0:
             raise InputError("rotation must be a rotation matrix (3, 3)")
         object.__setattr__(self, "rotation", rotation)
         radius = positive("edge_radius", self.edge_radius)

@@ -72,9 +72,7 @@ def record_run(
     """
     ticks = round(1.0 / (positive("rate", rate) * positive("dt", dt)))
     if ticks < 1 or abs(ticks * dt * rate - 1.0) > 1e-6:
-        raise InputError(
-            f"rate must leave a whole number of ticks of {dt:g} s between samples, not {rate:g} Hz"
-        )
+        raise InputError(f"rate must leave a whole number of ticks of {dt:g} s between samples, not {rate:g} Hz")
     if external_torque not in ("observer", "static"):
         raise InputError(f"external_torque must be 'observer' or 'static', not {external_torque!r}")
     if (model.nq, model.nv) != (robot.nq, robot.nv):

@@ -102,11 +102,7 @@ def touch_scene(
             size, stiffness = _log_uniform(rng, radius_range), _log_uniform(rng, stiffness_range)
             drawn = _place(robot, pose, link, kind, size, force / stiffness, rng)
             scene = drawn and _judge(robot, pose, link, drawn, stiffness, clearance)
-            if (
-                scene
-                and np.linalg.norm(scene.external_torque) >= least_torque
-                and _within(scene, force_range)
-            ):
+            if scene and np.linalg.norm(scene.external_torque) >= least_torque and _within(scene, force_range):
                 return scene
     raise InputError(
         f"link: no touch of '{link}' by a {kind} was found in {_TRIES} draws; other poses, sizes or a lower"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -27,23 +28,32 @@ def eye(azimuth: float, elevation: float = ELEVATION) -> Eye:
     return across, np.cross(towards, across), towards
 
 
-def body(robot: Robot, q: FloatArray, view: Eye) -> PolyCollection:
-    """The robot as the eye sees it, lit from the upper right."""
+def body(
+    robot: Robot, q: FloatArray, view: Eye, others: Sequence[tuple[FloatArray, str]] = ()
+) -> PolyCollection:
+    """The robot as the eye sees it, lit from the upper right.
+
+    `others`: things beside it, as triangles `(n, 3, 3)`, counterclockwise from outside, and their colours.
+    """
     across, up, towards = view
+    solids = [(_faces(robot, q, link), BODY) for link in robot.link_names]
     corners, shades = [], []
-    for link in robot.link_names:
-        surface, pose = robot.surface(link), robot.link_pose(q, link)
-        faces = (surface.vertices @ pose[:3, :3].T + pose[:3, 3])[surface.triangles]
+    for faces, colour in [*solids, *others]:
         normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
         normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
         light = 0.72 + 0.28 * np.clip(normals @ (0.6 * towards + 0.5 * up + 0.6 * across), 0.0, 1.0)
         seen = normals @ towards > 0.0
         corners.append(faces[seen])
-        shades.append(np.clip(np.array(to_rgb(BODY)) * 1.08 * light[seen, None], 0.0, 1.0))
+        shades.append(np.clip(np.array(to_rgb(colour)) * 1.08 * light[seen, None], 0.0, 1.0))
     triangles, colours = _split(np.concatenate(corners), np.concatenate(shades))
     order = np.argsort(triangles.mean(axis=1) @ towards)
     flat = np.stack([triangles @ across, triangles @ up], axis=2)[order]
     return PolyCollection(list(flat), facecolors=colours[order], edgecolors=colours[order], linewidths=0.4)
+
+
+def _faces(robot: Robot, q: FloatArray, link: str) -> FloatArray:
+    surface, pose = robot.surface(link), robot.link_pose(q, link)
+    return (surface.vertices @ pose[:3, :3].T + pose[:3, 3])[surface.triangles]
 
 
 def share_scale(axes: Any) -> None:

@@ -11,6 +11,7 @@ from rich.table import Table
 
 from .experiments import BY_NAME, CURVATURE, MODELS, NOISES, PRINTED, Experiment, Filter
 from .metric import Outcome
+from .names import short
 from .score import score
 from .study import Study
 
@@ -66,7 +67,7 @@ def _errors(
         if link is None:
             sheet.add_section()
         count = f"{min(counts)}" if min(counts) == max(counts) else f"{min(counts)}-{max(counts)}"
-        sheet.add_row(_short(link, study), *cells, count)
+        sheet.add_row(short(link, study.links) if link else "all", *cells, count)
     return sheet
 
 
@@ -98,7 +99,7 @@ def _confidence(study: Study, experiment: Experiment) -> Table:
         if link is None:
             sheet.add_section()
         sheet.add_row(
-            _short(link, study),
+            short(link, study.links) if link else "all",
             _centimetres(figures.worst),
             percent(figures.force),
             percent(figures.covered),
@@ -109,14 +110,6 @@ def _confidence(study: Study, experiment: Experiment) -> Table:
             _centimetres(figures.mode),
         )
     return sheet
-
-
-def _short(link: str | None, study: Study) -> str:
-    """Without a first word that all names share."""
-    if link is None:
-        return "all"
-    shared = len({each.partition("_")[0] for each in study.links}) == 1
-    return link.partition("_")[2] or link if shared else link
 
 
 def percent(share: float) -> str:

@@ -1,0 +1,43 @@
+"""A cube and a pole in place of the sphere, after Figs. 6 and 7."""
+
+from __future__ import annotations
+
+from matplotlib.figure import Figure
+
+from ...demo.style import TEXT
+from ...sim.obstacles import obstacle_from_dict
+from .experiments import BY_NAME
+from .names import short
+from .plot_bodies import best_eye, draw_moment
+from .plot_errors import finish, grouped_bars
+from .progress import watch
+from .study import Study
+
+SHOWN = ("cube", "pole")
+BARS = (("sphere", "random"), ("cube", "cube"), ("pole", "pole"))
+COLOURS = ("#D55E00", "#0072B2", "#009E73")
+
+
+def draw_obstacles(figure: Figure, study: Study) -> None:
+    """The end of a run with each, and the errors by link."""
+    axes = figure.subplots(1, 3, width_ratios=(1, 1, 2))
+    for each, name in zip(axes, SHOWN, strict=False):
+        # The middle of the arm, else the first that has such a trial.
+        links = sorted(study.links, key=lambda link: abs(study.links.index(link) - len(study.links) // 2))
+        touched = next(
+            (link for link in links if study.outcomes(BY_NAME[name], BY_NAME[name].filters[0], link)), None
+        )
+        if touched is None:
+            each.set_axis_off()
+            continue
+        number = next(
+            t.number for t in study.trials if (t.experiment, t.link) == (name, touched) and t.outcomes
+        )
+        progress = watch(study.options, name, touched, (1.0,), number)
+        moment, obstacle = progress.moments[-1], obstacle_from_dict(progress.run.settings["obstacle"])
+        draw_moment(each, progress.arm, moment, obstacle, best_eye(moment))
+        each.set_title(f"{name.capitalize()} at {short(touched, study.links)}: end of a run", color=TEXT)
+    bars = [(label, BY_NAME[name], BY_NAME[name].filters[0]) for label, name in BARS]
+    grouped_bars(axes[2], study, bars, COLOURS)
+    axes[2].set_title("Error of the point, cm")
+    finish(figure, axes[2], len(bars))

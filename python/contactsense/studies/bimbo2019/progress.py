@@ -1,0 +1,100 @@
+"""One trial, watched: the particles at several moments, after Fig. 3."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...sim.run import ContactRun
+from .arm import Arm, load_arm
+from .experiments import BY_NAME, CURVATURE, Filter
+from .options import Options
+from .study import trial_seed
+from .tracking import track
+from .trials import record
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Moment:
+    """The particles after one update; world frame."""
+
+    update: int
+    time: float  # [s] since the first
+    q: FloatArray
+    points: FloatArray  # (n, 3)
+    normals: FloatArray  # (n, 3)
+    forces: FloatArray  # (n,) [N]
+    misfit: FloatArray  # (n,) of the torques, relative to those felt
+    weights: FloatArray  # (n,)
+    estimate: FloatArray  # (3,)
+    true_point: FloatArray
+    true_force: FloatArray
+
+
+@dataclass(frozen=True)
+class Progress:
+    """One trial of one filter."""
+
+    arm: Arm
+    link: str
+    run: ContactRun
+    moments: tuple[Moment, ...]
+
+
+def watch(
+    options: Options, experiment: str, link: str, shares: tuple[float, ...], number: int = 0
+) -> Progress:
+    """A trial of the study again, its particles kept at `shares` of the run.
+
+    Raises:
+        InputError: this trial could not be recorded.
+    """
+    arm, kind = load_arm(options), _filter(experiment)
+    seed = trial_seed(options, experiment, link, number)
+    run = record(arm, BY_NAME[experiment], link, number, seed)
+    rows = {round(share * (len(run) - 1)) for share in shares}
+    moments: list[Moment] = []
+
+    def keep(row: int, particles: Any, estimate: Any) -> None:
+        if row in rows:
+            moments.append(_moment(arm, run, row, particles.particles, estimate))
+
+    track(arm, run, kind, options, seed, keep)
+    return Progress(arm, link, run, tuple(moments))
+
+
+def _filter(experiment: str) -> Filter:
+    return next(kind for kind in BY_NAME[experiment].filters if kind.name == CURVATURE.name)
+
+
+def _moment(arm: Arm, run: ContactRun, row: int, particles: Any, estimate: Any) -> Moment:
+    q, torque = run.q[row], run.external_torque[row]
+    points, normals = np.asarray(particles.point), np.asarray(particles.normal)
+    forces = np.asarray(particles.force)
+    push = -forces[:, None] * normals
+    felt = np.empty((len(points), arm.robot.nv))
+    for number, name in enumerate(arm.robot.link_names):
+        own = np.asarray(particles.link) == number
+        if own.any():
+            origin, jacobian = arm.robot.link_pose(q, name)[:3, 3], arm.robot.jacobian(q, name)
+            moment = np.cross(points[own] - origin, push[own])
+            felt[own] = push[own] @ jacobian[:3] + moment @ jacobian[3:]
+    misfit = np.linalg.norm(felt - torque, axis=1) / max(float(np.linalg.norm(torque)), 1e-12)
+    return Moment(
+        row,
+        float(run.time[row] - run.time[0]),
+        q,
+        points.copy(),
+        normals.copy(),
+        forces.copy(),
+        misfit,
+        np.asarray(particles.weight).copy(),
+        np.asarray(estimate.point),
+        run.point[row],
+        run.force[row],
+    )
