@@ -1,9 +1,10 @@
 """Where a link's true surface and an obstacle meet deepest.
 
-The deepest point is the point of the link's surface that is nearest to the obstacle's core; the contact normal
-runs between the two, also on edges and corners of the mesh. For a sphere this is exact: the nearest surface
-point to its centre. For a pole and a cube, the distance of the core's points from the link is minimised over
-the core: from a grid of starts, by projected gradient steps whose length follows Barzilai and Borwein (1988).
+The deepest point is the point of the link's surface that is nearest to the obstacle's core; the contact
+normal runs between the two, also on edges and corners of the mesh. For a sphere that is the nearest point to
+its centre. For a pole and a cube, coal finds the nearest pair of the surface's triangles and the core; on
+exact primitives, which it gets as triangles, the pair is then drawn to the true surface by alternate
+projections.
 """
 
 from __future__ import annotations
@@ -16,10 +17,11 @@ from contactsense import Robot, Surface
 from contactsense.errors import InputError
 
 from ._arrays import FloatArray
+from .nearest_pair import ObstacleCore, link_body
 from .obstacles import Obstacle, SphereObstacle
 
-_ROUNDS = 80
-_STILL = 1e-9  # [m]
+# Rounds of projection, and the step at which they end [m].
+_ROUNDS, _STILL = 50, 1e-9
 # Below this cosine between the triangle's normal and the way to the query, the side is checked with a ray.
 _CLEAR = 0.2
 
@@ -52,8 +54,8 @@ class ContactQuery:
         if unknown:
             raise InputError(f"links: '{unknown[0]}' has no surface; there are {', '.join(robot.link_names)}")
         self.robot, self.obstacle, self.links = robot, obstacle, names
+        self._shape = None if isinstance(obstacle, SphereObstacle) else ObstacleCore(obstacle)
         self._surfaces = {name: robot.surface(name) for name in names}
-        self._balls = {name: _bounding_ball(surface) for name, surface in self._surfaces.items()}
 
     def touching(self, q: FloatArray) -> list[DeepestPoint]:
         """One for each link that penetrates the obstacle at `q`, deepest first."""
@@ -67,7 +69,7 @@ class ContactQuery:
     def near(self, q: FloatArray, link: str, margin: float) -> DeepestPoint | None:
         """The deepest point of `link`, or None where the gap exceeds `margin` [m]."""
         pose = self.robot.link_pose(q, link)
-        center, radius = self._balls[link]
+        center, radius = link_body(self.robot, link, self._surfaces[link]).ball
         middle = pose[:3, :3] @ center + pose[:3, 3]
         if float(self.obstacle.signed_distance(middle[None])[0]) > radius + margin:
             return None
@@ -81,55 +83,46 @@ class ContactQuery:
     def _deepest(self, pose: FloatArray, link: str) -> DeepestPoint:
         surface = self._surfaces[link]
         rotation, origin = pose[:3, :3], pose[:3, 3]
-        core = (self.obstacle.starts() - origin) @ rotation
-        if not isinstance(self.obstacle, SphereObstacle):
-            core = self._nearest_of_core(surface, core, rotation, origin)[None]
-        closest = surface.closest_points(core)
-        point, distance = closest.points[0], float(closest.distances[0])
-        arm = core[0] - point
-        outside = float(arm @ closest.normals[0]) > _CLEAR * distance or not inside(surface, core[0])
-        sign = 1.0 if outside else -1.0
-        normal = sign * arm / distance if distance > 1e-9 else closest.normals[0]
-        penetration = self.obstacle.rounding - sign * distance
-        return DeepestPoint(link, rotation @ point + origin, rotation @ normal, penetration)
+        if self._shape is None:
+            return _at_center(surface, link, rotation, origin, self.obstacle)
+        body = link_body(self.robot, link, surface)
+        on_link, on_core = self._shape.nearest(body, rotation, origin)
+        if body.exact:
+            on_link, on_core = self._polish(surface, rotation, origin, on_core)
+        arm = on_core - on_link
+        distance = float(np.linalg.norm(arm))
+        normal = arm / distance if distance > 1e-12 else np.zeros(3)
+        return DeepestPoint(link, on_link, normal, self.obstacle.rounding - distance)
 
-    def _nearest_of_core(
-        self, surface: Surface, starts: FloatArray, rotation: FloatArray, origin: FloatArray
-    ) -> FloatArray:
-        """(3,) the point of the core nearest to the surface, link frame."""
-        reach = float(np.linalg.norm(starts[1] - starts[0]))
-        distances = surface.closest_points(starts).distances
-        # The distance changes by no more than the way between two points: farther starts cannot win.
-        order = np.argsort(distances)
-        order = order[distances[order] < distances[order[0]] + reach][:_STARTS]
-        points = starts[order]
-        steps = np.ones((len(points), 1))
-        best, least = points[0], float(distances[order[0]])
-        before, slope_before = points, np.zeros_like(points)
-        for turn in range(_ROUNDS):
-            closest = surface.closest_points(points)
-            slope = points - closest.points
-            k = int(np.argmin(closest.distances))
-            if closest.distances[k] < least:
-                best, least = points[k], float(closest.distances[k])
-            if turn:
-                way, change = points - before, slope - slope_before
-                product = (way * change).sum(axis=1, keepdims=True)
-                length = (way * way).sum(axis=1, keepdims=True)
-                steps = np.where(product > 1e-3 * length, length / np.maximum(product, 1e-300), 1.0)
-            before, slope_before = points, slope
-            world = (points - steps * slope) @ rotation.T + origin
-            points = (self.obstacle.project(world) - origin) @ rotation
-            if float(np.abs(points - before).max()) < _STILL:
+    def _polish(
+        self, surface: Surface, rotation: FloatArray, origin: FloatArray, on_core: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        for _ in range(_ROUNDS):
+            local = surface.closest_points(((on_core - origin) @ rotation)[None]).points[0]
+            on_link = rotation @ local + origin
+            before, on_core = on_core, self.obstacle.project(on_link[None])[0]
+            if float(np.abs(on_core - before).max()) < _STILL:
                 break
-        return best
+        return on_link, on_core
 
 
-_STARTS = 4
+def _at_center(
+    surface: Surface, link: str, rotation: FloatArray, origin: FloatArray, sphere: Obstacle
+) -> DeepestPoint:
+    center = (sphere.center - origin) @ rotation
+    closest = surface.closest_points(center[None])
+    point, distance = closest.points[0], float(closest.distances[0])
+    arm = center - point
+    outside = float(arm @ closest.normals[0]) > _CLEAR * distance or not inside(surface, center)
+    sign = 1.0 if outside else -1.0
+    normal = sign * arm / distance if distance > 1e-9 else closest.normals[0]
+    penetration = sphere.rounding - sign * distance
+    return DeepestPoint(link, rotation @ point + origin, rotation @ normal, penetration)
 
 
 def inside(surface: Surface, point: FloatArray) -> bool:
-    """Whether `point` (3,), link frame, is in the body: a ray from it leaves as often as it enters, and once more.
+    """Whether `point` (3,), link frame, is in the body: a ray from it leaves as often as it enters, and once
+    more.
 
     On a surface that is not closed, the side of the nearest triangle decides.
     """
@@ -147,10 +140,3 @@ def moving_links(robot: Robot) -> tuple[str, ...]:
     """Links with a surface that some joint moves."""
     q = robot.neutral()
     return tuple(link for link in robot.link_names if np.abs(robot.jacobian(q, link)).max() > 0.0)
-
-
-def _bounding_ball(surface: Surface) -> tuple[FloatArray, float]:
-    vertices = surface.vertices
-    center = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
-    # Primitives bulge a little beyond their tessellation.
-    return center, 1.02 * float(np.linalg.norm(vertices - center, axis=1).max()) + 1e-3

@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from ._arrays import FloatArray, not_negative, vector
+from ._arrays import FloatArray, not_negative
 from .noise import TorqueNoise
 
 
@@ -17,10 +17,10 @@ from .noise import TorqueNoise
 class TorqueError:
     """Errors of the external torque, as a filter gets it.
 
-    `measured_i = tau_i + percent/100 |tau_i| e + newton_metres e' + bias_i`, with `e`, `e'` standard normal and
-    new in every sample and joint. So `percent` is of each joint's present external torque (Bimbo 2019, Fig. 5:
-    "standard deviation of noise is 10% of the measured signal"), not of the motor torque, most of which is
-    gravity.
+    `measured_i = tau_i + percent/100 |tau_i| e + newton_metres e' + bias_i`, with `e`, `e'` standard normal
+    and new in every sample and joint. So `percent` is of each joint's present external torque (Bimbo 2019,
+    Fig. 5: "standard deviation of noise is 10% of the measured signal"), not of the motor torque, most of
+    which is gravity.
     """
 
     percent: float = 0.0
@@ -33,7 +33,7 @@ class TorqueError:
             not_negative(name, getattr(self, name))
 
     def measure(self, torques: ArrayLike) -> FloatArray:
-        """(T, nv) external torques as they would be measured, one run's samples; the same for the same seed."""
+        """(T, nv) external torques of one run as they would be measured; the same for the same seed."""
         true = np.array(torques, dtype=np.float64)
         noise = TorqueNoise(percent=self.percent, newton_metres=self.newton_metres, seed=self.seed)
         bias = self.bias * np.random.default_rng([self.seed, 1]).standard_normal(true.shape[1])
@@ -60,7 +60,8 @@ def perturbed_model(
     """A copy of `model` with other masses: the true robot, where a nominal model is all that is known.
 
     Args:
-        mass: standard deviation of each body's mass, as a share of it (0.05: 5 %); rotational inertia follows.
+        mass: standard deviation of each body's mass, as a share of it (0.05: 5 %); rotational inertia
+            follows.
         centre: of each coordinate of its centre of mass [m].
         inertia: of its rotational inertia as a whole, as a share, besides what follows from the mass.
         seed: same seed, same robot.
@@ -76,6 +77,8 @@ def perturbed_model(
         heavier, rounder = np.clip(1.0 + np.array([mass, inertia]) * rng.standard_normal(2), 0.5, 2.0)
         shift = centre * rng.standard_normal(3)
         changed.inertias[index] = pin.Inertia(
-            float(body.mass * heavier), vector("centre", body.lever + shift, 3), body.inertia * heavier * rounder
+            float(body.mass * heavier),
+            body.lever + shift,
+            body.inertia * heavier * rounder,
         )
     return changed

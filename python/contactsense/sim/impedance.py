@@ -14,40 +14,61 @@ _AXES = pin.LOCAL_WORLD_ALIGNED
 
 
 class ImpedanceController:
-    """`tau = K (q_d - q) - D v + C v + g`, for a fixed base.
+    """`tau = K (q_d - q) + D (v_d - v) + C v + g`, for a fixed base.
 
     Args:
         model: Pinocchio model, all joints with one coordinate.
         stiffness: K, one for all or (nv,) [Nm/rad, N/m].
-        damping_ratio: gives `D_i = 2 damping_ratio sqrt(K_i M_ii(q))`.
+        damping_ratio: of every mode: D is chosen by double diagonalisation of M(q) and K (Albu-Schaeffer
+            2003).
+        bandwidth: modes faster than this are made softer [1/s]. A light wrist on a stiff spring swings faster
+            than control at 1 kHz can follow.
 
     Raises:
         InputError: names the argument.
     """
 
-    def __init__(self, model: pin.Model, *, stiffness: ArrayLike = 600.0, damping_ratio: float = 0.7) -> None:
+    def __init__(
+        self,
+        model: pin.Model,
+        *,
+        stiffness: ArrayLike = 1000.0,
+        damping_ratio: float = 0.7,
+        bandwidth: float = 150.0,
+    ) -> None:
         _fixed(model)
         self._model, self._data = model, model.createData()
         self.stiffness = _gains("stiffness", stiffness, model.nv)
         self.damping_ratio = not_negative("damping_ratio", damping_ratio)
+        self.bandwidth = positive("bandwidth", bandwidth)
 
     def torque(
-        self, q: FloatArray, v: FloatArray, desired: FloatArray, feedforward: FloatArray | None = None
+        self,
+        q: FloatArray,
+        v: FloatArray,
+        desired: FloatArray,
+        desired_v: FloatArray | None = None,
+        feedforward: FloatArray | None = None,
     ) -> FloatArray:
-        """(nv,) motor torque [Nm] at `q`, `v`, drawn towards `desired` (nq,); plus `feedforward` (nv,)."""
-        mass = np.diagonal(pin.crba(self._model, self._data, q))
-        damping = 2.0 * self.damping_ratio * np.sqrt(self.stiffness * mass)
+        """(nv,) motor torque [Nm] at `q`, `v`, drawn towards `desired` (nq,).
+
+        `desired_v` (nv,) is v_d, zero by default; `feedforward` (nv,) is added.
+        """
+        slip = v if desired_v is None else v - desired_v
+        upper = np.triu(pin.crba(self._model, self._data, q))
+        mass = upper + np.triu(upper, 1).T
+        stiffness, damping = _gains_at(mass, self.stiffness, self.damping_ratio, self.bandwidth)
         bias = pin.nonLinearEffects(self._model, self._data, q, v)
-        torque: FloatArray = self.stiffness * (desired - q) - damping * v + bias
+        torque: FloatArray = stiffness @ (desired - q) - damping @ slip + bias
         return torque if feedforward is None else torque + feedforward
 
 
 class HandImpedanceController:
     """A hand held by a spring in its six directions; the joints are drawn to `q_d` in what is left free.
 
-    `tau = J^T (K_x e - D_x J v) + N^T (K (q_d - q) - D v) + C v + g`, where the hand's pose error `e` is that to
-    its pose at `q_d`, and `N = I - M^-1 J^T (J M^-1 J^T)^-1 J` projects on motions that leave the hand where it
-    is (Khatib 1987). An arm with seven joints can so move its elbow.
+    `tau = J^T (K_x e + D_x J (v_d - v)) + N^T (K (q_d - q) + D (v_d - v)) + C v + g`, where the hand's pose
+    error `e` is that to its pose at `q_d`, and `N = I - M^-1 J^T (J M^-1 J^T)^-1 J` projects on motions that
+    leave the hand where it is (Khatib 1987). An arm with seven joints can so move its elbow.
 
     Args:
         model: Pinocchio model, all joints with one coordinate.
@@ -56,6 +77,7 @@ class HandImpedanceController:
         rotation: stiffness [Nm/rad].
         stiffness: K of the joints, in the null space, one for all or (nv,) [Nm/rad].
         damping_ratio: of both.
+        bandwidth: as for `ImpedanceController`.
 
     Raises:
         InputError: names the argument.
@@ -68,8 +90,9 @@ class HandImpedanceController:
         *,
         translation: float = 2000.0,
         rotation: float = 200.0,
-        stiffness: ArrayLike = 300.0,
+        stiffness: ArrayLike = 500.0,
         damping_ratio: float = 0.7,
+        bandwidth: float = 150.0,
     ) -> None:
         _fixed(model)
         if not model.existFrame(link, pin.FrameType.BODY):
@@ -80,12 +103,22 @@ class HandImpedanceController:
         self._hand_stiffness = np.array(sizes)
         self.stiffness = _gains("stiffness", stiffness, model.nv)
         self.damping_ratio = not_negative("damping_ratio", damping_ratio)
+        self.bandwidth = positive("bandwidth", bandwidth)
 
     def torque(
-        self, q: FloatArray, v: FloatArray, desired: FloatArray, feedforward: FloatArray | None = None
+        self,
+        q: FloatArray,
+        v: FloatArray,
+        desired: FloatArray,
+        desired_v: FloatArray | None = None,
+        feedforward: FloatArray | None = None,
     ) -> FloatArray:
-        """(nv,) motor torque [Nm] at `q`, `v`, with the hand drawn to where it is at `desired` (nq,)."""
+        """(nv,) motor torque [Nm] at `q`, `v`, with the hand drawn to where it is at `desired` (nq,).
+
+        `desired_v` (nv,) is v_d, zero by default; `feedforward` (nv,) is added.
+        """
         model, data = self._model, self._data
+        slip = v if desired_v is None else v - desired_v
         pin.forwardKinematics(model, data, desired)
         goal = pin.updateFramePlacement(model, data, self._frame).copy()
         pin.computeAllTerms(model, data, q, v)
@@ -99,12 +132,24 @@ class HandImpedanceController:
         inertia = np.linalg.inv(jacobian @ by_mass + 1e-4 * np.eye(6))
         ratio = 2.0 * self.damping_ratio
         hand_damping = ratio * np.sqrt(self._hand_stiffness * np.diagonal(inertia))
-        wrench = self._hand_stiffness * error - hand_damping * (jacobian @ v)
-        damping = ratio * np.sqrt(self.stiffness * np.diagonal(mass))
-        free = self.stiffness * (desired - q) - damping * v
+        wrench = self._hand_stiffness * error - hand_damping * (jacobian @ slip)
+        stiffness, damping = _gains_at(mass, self.stiffness, self.damping_ratio, self.bandwidth)
+        free = stiffness @ (desired - q) - damping @ slip
         free -= jacobian.T @ (inertia @ (by_mass.T @ free))
         torque: FloatArray = jacobian.T @ wrench + free + data.nle
         return torque if feedforward is None else torque + feedforward
+
+
+def _gains_at(
+    mass: FloatArray, stiffness: FloatArray, ratio: float, bandwidth: float
+) -> tuple[FloatArray, FloatArray]:
+    """Stiffness and damping (nv, nv): every mode with the damping ratio, none above the bandwidth."""
+    root = np.linalg.cholesky(mass)
+    inverse = np.linalg.inv(root)
+    squares, modes = np.linalg.eigh((inverse * stiffness) @ inverse.T)
+    speed = np.minimum(np.sqrt(np.maximum(squares, 0.0)), bandwidth)
+    shape = root @ modes
+    return (shape * speed**2) @ shape.T, (shape * (2.0 * ratio * speed)) @ shape.T
 
 
 def _fixed(model: pin.Model) -> None:

@@ -71,10 +71,6 @@ class SphereObstacle(_Rounded):
     def project(self, points: FloatArray) -> FloatArray:
         return np.broadcast_to(self.center, points.shape)
 
-    def starts(self) -> FloatArray:
-        """(n, 3) points of the core from which a search for the nearest one begins."""
-        return self.center[None]
-
     def to_dict(self) -> dict[str, Any]:
         """Plain values for `obstacle_from_dict`."""
         return {"kind": "sphere", "center": self.center.tolist(), "radius": self.radius}
@@ -84,8 +80,8 @@ class SphereObstacle(_Rounded):
 class CubeObstacle(_Rounded):
     """A box in the world with slightly rounded edges.
 
-    `center` (3,) [m]; `half_extents` (3,), or one number for a cube [m]; `rotation` (3, 3) from its axes to the
-    world's; `edge_radius` of its edges and corners, inside the extents [m].
+    `center` (3,) [m]; `half_extents` (3,), or one number for a cube [m]; `rotation` (3, 3) from its axes to
+    the world's; `edge_radius` of its edges and corners, inside the extents [m].
     """
 
     center: FloatArray
@@ -101,7 +97,10 @@ class CubeObstacle(_Rounded):
             raise InputError("half_extents must be positive")
         object.__setattr__(self, "half_extents", extents)
         rotation = vector("rotation", np.asarray(self.rotation, dtype=np.float64).ravel(), 9).reshape(3, 3)
-        if not np.allclose(rotation @ rotation.T, np.eye(3), rtol=0, atol=1e-9) or np.linalg.det(rotation) < 0:
+        if (
+            not np.allclose(rotation @ rotation.T, np.eye(3), rtol=0, atol=1e-9)
+            or np.linalg.det(rotation) < 0
+        ):
             raise InputError("rotation must be a rotation matrix (3, 3)")
         object.__setattr__(self, "rotation", rotation)
         radius = positive("edge_radius", self.edge_radius)
@@ -128,11 +127,6 @@ class CubeObstacle(_Rounded):
         local = (points - self.center) @ self.rotation
         nearest: FloatArray = self.center + np.clip(local, -self.core, self.core) @ self.rotation.T
         return nearest
-
-    def starts(self) -> FloatArray:
-        """(n, 3) points of the core from which a search for the nearest one begins."""
-        points: FloatArray = self.center + (_BOX * self.core) @ self.rotation.T
-        return points
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values for `obstacle_from_dict`."""
@@ -172,17 +166,17 @@ class CylinderObstacle(_Rounded):
         """Of the sphere about `center` that holds all of it [m]."""
         return self.half_length + self.radius
 
+    @property
+    def frame(self) -> FloatArray:
+        """(3, 3) rotation to the world from axes of which the third is the pole's."""
+        first = np.cross(self.axis, np.eye(3)[int(np.argmin(np.abs(self.axis)))])
+        first /= np.linalg.norm(first)
+        return np.stack([first, np.cross(self.axis, first), self.axis], axis=1)
+
     def project(self, points: FloatArray) -> FloatArray:
         along = np.clip((points - self.center) @ self.axis, -self.half_length, self.half_length)
         nearest: FloatArray = self.center + along[:, None] * self.axis
         return nearest
-
-    def starts(self) -> FloatArray:
-        """(n, 3) points of the core from which a search for the nearest one begins."""
-        count = int(np.clip(np.ceil(2 * self.half_length / _SPACING), 2, 64)) + 1
-        steps = np.linspace(-self.half_length, self.half_length, count)
-        points: FloatArray = self.center + steps[:, None] * self.axis
-        return points
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values for `obstacle_from_dict`."""
@@ -197,19 +191,6 @@ class CylinderObstacle(_Rounded):
 
 Obstacle: TypeAlias = SphereObstacle | CubeObstacle | CylinderObstacle
 
-# Between the starts on a pole [m].
-_SPACING = 0.03
-
-
-def _box_grid() -> FloatArray:
-    steps = np.linspace(-1.0, 1.0, 5)
-    grid = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1).reshape(-1, 3)
-    surface: FloatArray = grid[np.abs(grid).max(axis=1) == 1.0]
-    return surface
-
-
-_BOX = _box_grid()
-
 
 def obstacle_from_dict(values: Mapping[str, Any]) -> Obstacle:
     """The obstacle that `to_dict` wrote.
@@ -217,15 +198,16 @@ def obstacle_from_dict(values: Mapping[str, Any]) -> Obstacle:
     Raises:
         InputError: no such kind, or a value is missing or wrong.
     """
-    kinds = {"sphere": SphereObstacle, "cube": CubeObstacle, "cylinder": CylinderObstacle}
+    kinds: dict[str, Any] = {"sphere": SphereObstacle, "cube": CubeObstacle, "cylinder": CylinderObstacle}
     rest = dict(values)
     kind = rest.pop("kind", None)
     if kind not in kinds:
         raise InputError(f"kind must be one of {', '.join(kinds)}, not {kind!r}")
     try:
-        return kinds[kind](**rest)
+        obstacle: Obstacle = kinds[kind](**rest)
     except TypeError as error:
         raise InputError(f"obstacle: {error}") from error
+    return obstacle
 
 
 def _rows(name: str, points: ArrayLike) -> FloatArray:

@@ -29,8 +29,9 @@ class ContactForce:
 class PenaltyContact:
     """A penalty force at the deepest point of every link that touches the obstacle.
 
-    Normal force `F = stiffness d (1 + dissipation d')` along the inward normal, never pulling (Hunt and Crossley
-    1975); `d` is the penetration. Friction `-friction F v_t / sqrt(|v_t|^2 + slip_speed^2)`, Coulomb's
+    Normal force `F = stiffness d (1 + dissipation d')` along the inward normal, never pulling (Hunt and
+    Crossley 1975); `d` is the penetration. Friction `-friction F v_t / sqrt(|v_t|^2 + slip_speed^2)`,
+    Coulomb's
     regularised: at rest there is none, so a link held still creeps at a speed far below `slip_speed`.
 
     Args:

@@ -1,4 +1,4 @@
-"""Contact runs in closed form: a robot that moves so slowly that nothing but the contact and gravity counts."""
+"""Contact runs in closed form: the robot is so slow that only the contact and gravity count."""
 
 from __future__ import annotations
 

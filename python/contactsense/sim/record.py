@@ -10,10 +10,10 @@ import pinocchio as pin
 from contactsense import MomentumObserver, Robot
 from contactsense.errors import InputError
 
-from ._arrays import FloatArray, positive
+from ._arrays import FloatArray, not_negative, positive
 from .arm import SimulatedRobot
+from .contact_path import ContactPath
 from .disturbance import TorqueError
-from .exploration import ContactPath
 from .impedance import ImpedanceController
 from .noise import TorqueNoise
 from .penalty import ContactForce, PenaltyContact
@@ -25,7 +25,12 @@ class SoftController(Protocol):
     """`ImpedanceController`, `HandImpedanceController`, or another."""
 
     def torque(
-        self, q: FloatArray, v: FloatArray, desired: FloatArray, feedforward: FloatArray | None = None
+        self,
+        q: FloatArray,
+        v: FloatArray,
+        desired: FloatArray,
+        desired_v: FloatArray | None = None,
+        feedforward: FloatArray | None = None,
     ) -> FloatArray: ...
 
 
@@ -42,14 +47,15 @@ def record_run(
     external_torque: Literal["observer", "static"] = "observer",
     observer_gain: float = 50.0,
     rate: float = 50.0,
+    settle: float = 0.3,
     dt: float = 0.001,
     settings: dict[str, Any] | None = None,
 ) -> ContactRun:
     """Simulate an arm that follows `path` softly, pressing on the obstacle; record at `rate`.
 
-    It starts at rest at the path's first pose. The controller is fed the path's poses, and the torques with which
-    the contact is planned to push back: a soft arm alone would stop short of the obstacle. Forces are those of
-    `contact`, at the deepest point of the true surface, new in every tick.
+    It starts at rest at the path's first pose. The controller is fed the path's poses, and the torques with
+    which the contact is planned to push back: a soft arm alone would stop short of the obstacle. Forces are
+    those of `contact`, at the deepest point of the true surface, new in every tick.
 
     Args:
         robot: what is known of the arm: the observer uses it.
@@ -64,6 +70,7 @@ def record_run(
         external_torque: "observer": `MomentumObserver`; "static": `g(q) - tau`, right while the arm is slow.
         observer_gain: [1/s].
         rate: of the samples [Hz]; a whole number of ticks must fit between them.
+        settle: rest at the path's first pose before time zero, so that the observer has caught up [s].
         dt: control tick and simulation step [s].
         settings: added to those of the record.
 
@@ -72,7 +79,9 @@ def record_run(
     """
     ticks = round(1.0 / (positive("rate", rate) * positive("dt", dt)))
     if ticks < 1 or abs(ticks * dt * rate - 1.0) > 1e-6:
-        raise InputError(f"rate must leave a whole number of ticks of {dt:g} s between samples, not {rate:g} Hz")
+        raise InputError(
+            f"rate must leave a whole number of ticks of {dt:g} s between samples, not {rate:g} Hz"
+        )
     if external_torque not in ("observer", "static"):
         raise InputError(f"external_torque must be 'observer' or 'static', not {external_torque!r}")
     if (model.nq, model.nv) != (robot.nq, robot.nv):
@@ -84,14 +93,14 @@ def record_run(
     still = np.zeros(robot.nv)
     rows: list[tuple[FloatArray, ...]] = []
     forces: list[tuple[ContactForce, ...]] = []
-    for tick in range(round(float(path.time[-1]) / dt) + 1):
+    for tick in range(-round(not_negative("settle", settle) / dt), round(float(path.time[-1]) / dt) + 1):
         q, v = arm.q, arm.v
-        desired, planned = path.at(tick * dt)
+        goal = path.at(tick * dt)
         arm.clear_forces()
         contact.apply(arm)
-        measured = arm.step(control.torque(q, v, desired, -planned))
+        measured = arm.step(control.torque(q, v, goal.q, goal.v, -goal.external_torque))
         felt = observer.update(q, v, measured.tau_mean)
-        if tick % ticks == 0:
+        if tick >= 0 and tick % ticks == 0:
             if external_torque == "static":
                 felt = robot.inverse_dynamics(q, still, still) - measured.tau_mean
             forces.append(contact.forces(q, v))

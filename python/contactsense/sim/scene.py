@@ -24,6 +24,8 @@ _RANGE = 0.9
 _TRIES = 2000
 # Points of the surface tried in one pose.
 _POINTS = 4
+# Of edges and poles out of the tangent plane, at most [rad].
+_TILT = 0.15
 # A pressed obstacle's rounding must not be used up [share].
 _DEEPEST = 0.7
 
@@ -59,19 +61,20 @@ def touch_scene(
     radius_range: tuple[float, float] = (0.02, 0.1),
     stiffness_range: tuple[float, float] = (3e3, 3e3),
     least_torque: float = 0.5,
-    clearance: float = 0.02,
+    clearance: float = 0.005,
     seed: int = 0,
 ) -> TouchScene:
     """A random pose, a random point of `link`, and an obstacle that presses there and touches nothing else.
 
-    A point whose force turns no joint cannot be felt by joint torques, whoever looks: such draws (near joint 1's
-    axis, or pressed along it) are thrown away, as are those with another link, moving or fixed, within
+    A point whose force turns no joint cannot be felt by joint torques, whoever looks: such draws (near joint
+    1's axis, or pressed along it) are thrown away, as are those with another link, moving or fixed, within
     `clearance`. So points are uniform by area only among those that can be touched and felt.
 
     Args:
-        model: of the same robot; gives the joints' limits, the middle 90 % of which is drawn from (a turn about
-            zero where there are none).
-        kind: "sphere"; "cube", with an edge towards the link; "cylinder", a pole tangent to it in a random way.
+        model: of the same robot; gives the joints' limits, the middle 90 % of which is drawn from (a turn
+            about zero where there are none).
+        kind: "sphere"; "cube", with an edge towards the link; "cylinder", a pole across it in a random
+            way.
         q: (nq,) this pose instead of a random one.
         force_range: uniform [N].
         radius_range: of sphere and pole, log-uniform; half extent of the cube [m].
@@ -102,7 +105,11 @@ def touch_scene(
             size, stiffness = _log_uniform(rng, radius_range), _log_uniform(rng, stiffness_range)
             drawn = _place(robot, pose, link, kind, size, force / stiffness, rng)
             scene = drawn and _judge(robot, pose, link, drawn, stiffness, clearance)
-            if scene and np.linalg.norm(scene.external_torque) >= least_torque and _within(scene, force_range):
+            if (
+                scene
+                and np.linalg.norm(scene.external_torque) >= least_torque
+                and _within(scene, force_range)
+            ):
                 return scene
     raise InputError(
         f"link: no touch of '{link}' by a {kind} was found in {_TRIES} draws; other poses, sizes or a lower"
@@ -119,13 +126,19 @@ def _place(
     depth: float,
     rng: np.random.Generator,
 ) -> Obstacle | None:
-    """An obstacle whose surface is `depth` under a random point of the link; None if that is too deep for it."""
+    """An obstacle `depth` deep in a random point of the link; None if it is too small for that."""
     sample = robot.surface(link).sample(1, seed=int(rng.integers(2**62)))
     pose = robot.link_pose(q, link)
     point = pose[:3, :3] @ sample.points[0] + pose[:3, 3]
     normal = pose[:3, :3] @ sample.normals[0]
     across = np.cross(normal, rng.normal(size=3))
+    # Not quite tangent: along a flat face, any point of the line would be as deep as the others.
     across /= np.linalg.norm(across)
+    tilt = rng.uniform(-_TILT, _TILT)
+    across = np.cos(tilt) * across + np.sin(tilt) * normal
+    if kind != "sphere":
+        normal = normal - (normal @ across) * across
+        normal /= np.linalg.norm(normal)
     if kind == "sphere":
         ball = SphereObstacle(point + (size - depth) * normal, size)
         return ball if depth < _DEEPEST * size else None
@@ -140,11 +153,11 @@ def _place(
     lean = rng.uniform(np.pi / 6, np.pi / 3)
     first = np.cos(lean) * normal + np.sin(lean) * other
     rotation = np.stack([across, first, np.cross(across, first)], axis=1)
-    box = CubeObstacle(np.zeros(3), size, rotation, edge)
+    box = CubeObstacle(np.zeros(3), np.full(3, size), rotation, edge)
     support = -(np.abs(normal @ rotation) @ box.core) - edge
     corner = -(rotation @ (np.sign(normal @ rotation) * box.core * [0.0, 1.0, 1.0])) - edge * normal
     assert abs(corner @ normal - support) < 1e-9
-    return CubeObstacle(point - depth * normal - corner, size, rotation, edge)
+    return CubeObstacle(point - depth * normal - corner, np.full(3, size), rotation, edge)
 
 
 def _judge(
