@@ -32,7 +32,6 @@ class Experiment:
     filters: tuple[Filter, ...]
     friction: float = 0.0
     model_error: float = 0.0  # relative, of every mass
-    physics: bool = True  # else led through its poses, at rest in each
 
 
 CURVATURE = Filter("curvature")
@@ -44,7 +43,7 @@ SPHERE = (*MODELS, PRINTED, *NOISES[1:])
 EXPERIMENTS = (
     Experiment("random", "random", "sphere", SPHERE),
     Experiment("deliberate", "deliberate", "sphere", SPHERE),
-    Experiment("cube", "random", "cube", (CURVATURE,), physics=False),
+    Experiment("cube", "random", "cube", (CURVATURE,)),
     Experiment("pole", "null space", "cylinder", (CURVATURE,), friction=0.2, model_error=0.05),
 )
 BY_NAME = {experiment.name: experiment for experiment in EXPERIMENTS}

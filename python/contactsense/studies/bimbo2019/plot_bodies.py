@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...demo.style import ESTIMATE, TRUTH
-from ...sim.obstacles import CubeObstacle, CylinderObstacle, Obstacle, SphereObstacle
+from ...sim import CubeObstacle, CylinderObstacle, Obstacle, SphereObstacle
 from ..robot_view import Eye, body, eye
 from ..sampling import blocked
 from .arm import Arm

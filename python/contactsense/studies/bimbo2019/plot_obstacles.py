@@ -5,7 +5,7 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from ...demo.style import TEXT
-from ...sim.obstacles import obstacle_from_dict
+from ...sim import obstacle_from_dict
 from .experiments import BY_NAME
 from .names import short
 from .plot_bodies import best_eye, draw_moment

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ...demo.style import ESTIMATE, GREY, TEXT, TRUTH
-from ...sim.obstacles import obstacle_from_dict
+from ...sim import obstacle_from_dict
 from ..robot_view import share_scale
 from .names import short
 from .plot_bodies import COLOURS, WORST, best_eye, draw_moment

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...sim.run import ContactRun
+from ...sim import ContactRun
 from .arm import Arm, load_arm
 from .experiments import BY_NAME, CURVATURE, Filter
 from .options import Options

@@ -8,19 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import InputError
-from ...sim.disturbance import perturbed_model
-from ...sim.exploration import (
+from ...sim import (
     ContactPath,
+    ContactRun,
     Pace,
+    PenaltyContact,
+    TouchScene,
     joint_exploration,
     null_space_exploration,
+    perturbed_model,
+    record_run,
     sliding_exploration,
+    touch_scene,
 )
-from ...sim.penalty import PenaltyContact
-from ...sim.quasi_static import record_quasi_static
-from ...sim.record import record_run
-from ...sim.run import ContactRun
-from ...sim.scene import TouchScene, touch_scene
 from .arm import Arm
 from .experiments import Experiment
 
@@ -37,7 +37,6 @@ PACES = {  # some 10 s each
 ELBOW = np.deg2rad(12.0)
 OBSERVER_GAIN = 200.0  # [1/s]
 SLIP_SPEED = 0.02  # of the regularised friction [m/s]
-SETTLED = 2  # samples until the observer knows the torque
 LEAST = 0.6  # share of the run that must be in contact
 STIFFNESS = (1e3, 1e4)  # of the contact [N/m]
 # Bent and clear of singular poses: shares of half of each joint's range, from its middle.
@@ -110,16 +109,19 @@ def _record(arm: Arm, experiment: Experiment, scene: TouchScene, path: ContactPa
         friction=experiment.friction,
         slip_speed=SLIP_SPEED,
     )
-    if not experiment.physics:
-        rows = slice(None, None, round(PACES[experiment.setup].rate / RATE))
-        return record_quasi_static(arm.robot, contact, path.time[rows], path.q[rows])
     return record_run(
-        arm.robot, arm.model, contact, path, true_model=true_model, observer_gain=OBSERVER_GAIN, rate=RATE
+        arm.robot,
+        arm.model,
+        contact,
+        path,
+        true_model=true_model,
+        observer_gain=OBSERVER_GAIN,
+        rate=RATE,
     )
 
 
 def _in_contact(run: ContactRun) -> ContactRun:
-    """From when the observer has settled to where the contact is lost first.
+    """The run to where the contact is lost first.
 
     Raises:
         InputError: that is too short.
@@ -128,4 +130,4 @@ def _in_contact(run: ContactRun) -> ContactRun:
     end = held.index(False) if False in held else len(held)
     if end < LEAST * len(run):
         raise InputError("the contact is lost")
-    return ContactRun(**{name: getattr(run, name)[SETTLED:end] for name in COLUMNS}, settings=run.settings)
+    return ContactRun(**{name: getattr(run, name)[:end] for name in COLUMNS}, settings=run.settings)
