@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,7 @@ from ...sim import (
     sliding_exploration,
     touch_scene,
 )
+from ...sim.quasi_static import gravity_torques
 from .arm import Arm
 from .experiments import Experiment
 
@@ -99,7 +101,7 @@ def _path(arm: Arm, experiment: Experiment, scene: TouchScene, seed: int) -> Con
 
 
 def _record(arm: Arm, experiment: Experiment, scene: TouchScene, path: ContactPath, seed: int) -> ContactRun:
-    true_model = None
+    true_model = arm.model
     if experiment.model_error:
         true_model = perturbed_model(arm.model, mass=experiment.model_error, seed=seed)
     contact = PenaltyContact(
@@ -109,15 +111,18 @@ def _record(arm: Arm, experiment: Experiment, scene: TouchScene, path: ContactPa
         friction=experiment.friction,
         slip_speed=SLIP_SPEED,
     )
-    return record_run(
-        arm.robot,
-        arm.model,
-        contact,
-        path,
-        true_model=true_model,
-        observer_gain=OBSERVER_GAIN,
-        rate=RATE,
+    run = record_run(
+        arm.robot, arm.model, contact, path, true_model=true_model, observer_gain=OBSERVER_GAIN, rate=RATE
     )
+    # What is felt in the first pose without a contact is known before there is one.
+    return replace(run, external_torque=run.external_torque - _offset(arm, true_model, path.q[0]))
+
+
+def _offset(arm: Arm, true_model: Any, q: FloatArray) -> FloatArray:
+    """External torque that an arm of other weight seems to feel at rest."""
+    weight, known = (gravity_torques(model, q[None])[0] for model in (true_model, arm.model))
+    offset: FloatArray = known - weight
+    return offset
 
 
 def _in_contact(run: ContactRun) -> ContactRun:
