@@ -1,6 +1,6 @@
 """Types of the compiled core; its docstrings say shapes, units, frames and errors."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from os import PathLike
 from typing import Any, Final, Literal, final
 
@@ -12,13 +12,17 @@ __all__ = [
     "Candidate",
     "ClosestPoints",
     "Contact",
+    "ContactEstimate",
     "ContactIsolator",
     "ContactMonitor",
+    "ContactParticleFilter",
     "ContactReport",
     "ForceTorqueSensor",
     "Isolation",
     "LoadCompensator",
+    "Mode",
     "MomentumObserver",
+    "Particles",
     "RayHits",
     "Robot",
     "Surface",
@@ -282,3 +286,94 @@ class ContactReport:
     def acceleration(self) -> NDArray[np.float64]: ...
     @property
     def contacts(self) -> tuple[Contact, ...]: ...
+
+@final
+class ContactParticleFilter:
+    def __new__(
+        cls,
+        robot: Robot,
+        *,
+        particles: int | None = None,
+        motion: Literal["curvature", "fixed_on_link", "fixed_in_world"] = "curvature",
+        measurement: Literal["normal"] = "normal",
+        links: Iterable[str] | None = None,
+        seed: int | None = None,
+        force_range: ArrayLike | None = None,
+        stiffness_range: ArrayLike | None = None,
+        radius_range: ArrayLike | None = None,
+        schedule: Literal["adaptive", "paper"] | Mapping[str, float | tuple[float, float]] | None = None,
+        threads: int | None = None,
+        likelihood: Literal["gaussian", "exponential"] = "gaussian",
+        torque_noise: ArrayLike | None = None,
+        relative_noise: float | None = None,
+        torque_threshold: ArrayLike | None = None,
+    ) -> Self: ...
+    def update(self, q: ArrayLike, tau_ext: ArrayLike, *, time: float | None = None) -> ContactEstimate: ...
+    def reset(self) -> None: ...
+    @property
+    def particles(self) -> Particles: ...
+
+@final
+class Particles:
+    @property
+    def link(self) -> NDArray[np.int64]: ...
+    @property
+    def point(self) -> NDArray[np.float64]: ...
+    @property
+    def normal(self) -> NDArray[np.float64]: ...
+    @property
+    def force(self) -> NDArray[np.float64]: ...
+    @property
+    def stiffness(self) -> NDArray[np.float64]: ...
+    @property
+    def weight(self) -> NDArray[np.float64]: ...
+
+@final
+class ContactEstimate:
+    @property
+    def contact(self) -> bool: ...
+    @property
+    def event(self) -> str: ...
+    @property
+    def link(self) -> str: ...
+    @property
+    def point(self) -> NDArray[np.float64]: ...
+    @property
+    def force(self) -> NDArray[np.float64]: ...
+    @property
+    def normal(self) -> NDArray[np.float64]: ...
+    @property
+    def magnitude(self) -> float: ...
+    @property
+    def stiffness(self) -> float | None: ...
+    @property
+    def covariance(self) -> NDArray[np.float64]: ...
+    @property
+    def link_probabilities(self) -> dict[str, float]: ...
+    @property
+    def modes(self) -> tuple[Mode, ...]: ...
+    @property
+    def ambiguous(self) -> bool: ...
+    @property
+    def explained(self) -> bool: ...
+    @property
+    def residual(self) -> float: ...
+    @property
+    def effective_samples(self) -> float: ...
+    @property
+    def time(self) -> float: ...
+
+@final
+class Mode:
+    @property
+    def link(self) -> str: ...
+    @property
+    def point(self) -> NDArray[np.float64]: ...
+    @property
+    def force(self) -> NDArray[np.float64]: ...
+    @property
+    def normal(self) -> NDArray[np.float64]: ...
+    @property
+    def probability(self) -> float: ...
+    @property
+    def spread(self) -> float: ...

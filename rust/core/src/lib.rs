@@ -7,6 +7,8 @@ pub mod error;
 pub mod isolation;
 pub mod monitor;
 pub mod observer;
+pub mod particle;
+mod random;
 pub mod robot;
 pub mod sensor;
 pub mod spatial;

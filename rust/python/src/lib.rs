@@ -8,9 +8,11 @@ mod arrays;
 mod compensator;
 mod description;
 mod errors;
+mod estimate;
 mod isolator;
 mod monitor;
 mod observer;
+mod particle;
 mod robot;
 mod sensor;
 mod surface;
@@ -35,5 +37,9 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<isolator::PyCandidate>()?;
     module.add_class::<monitor::PyContactMonitor>()?;
     module.add_class::<monitor::PyContactReport>()?;
+    module.add_class::<particle::PyContactParticleFilter>()?;
+    module.add_class::<particle::Particles>()?;
+    module.add_class::<estimate::PyContactEstimate>()?;
+    module.add_class::<estimate::PyMode>()?;
     Ok(())
 }

@@ -118,8 +118,12 @@ pub fn wrench_thresholds(object: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
 }
 
 pub fn sensor_names(object: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
-    let refused =
-        || input(object.py(), "wanted_contacts: expected an iterable of the names of sensors".into());
+    names("wanted_contacts", "sensors", object)
+}
+
+/// An iterable of strings, but no string itself: names of `what`.
+pub fn names(argument: &str, what: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
+    let refused = || input(object.py(), format!("{argument}: expected an iterable of the names of {what}"));
     if object.is_instance_of::<PyString>() {
         return Err(refused());
     }

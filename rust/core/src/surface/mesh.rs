@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::descent::Neighbours;
 use super::tree::{Child, Tree};
 use super::{repair, ClosestPoint};
 use crate::{Error, Result};
@@ -16,6 +17,7 @@ pub(super) struct Mesh {
     pub corners: Vec<[Vector3<f64>; 3]>,
     pub order: Vec<u32>,
     pub tree: Tree,
+    pub neighbours: Neighbours,
     pub closed: bool,
 }
 
@@ -36,7 +38,8 @@ impl Mesh {
             .collect();
         let (tree, order) = Tree::new(&all);
         let corners = order.iter().map(|&id| all[id as usize]).collect();
-        Ok(Mesh { vertices, triangles, normals, corners, order, tree, closed: repaired.closed })
+        let neighbours = Neighbours::new(vertices.len(), &triangles);
+        Ok(Mesh { vertices, triangles, normals, corners, order, tree, neighbours, closed: repaired.closed })
     }
 
     /// Whether `p` lies inside, by more than `tolerance`. The mesh must be closed.

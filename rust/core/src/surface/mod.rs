@@ -8,6 +8,7 @@ mod bvh;
 mod closest;
 mod collada;
 mod components;
+mod descent;
 mod line;
 mod load;
 mod mesh;
@@ -116,6 +117,14 @@ impl Surface {
         self.sampler.area()
     }
 
+    /// Area that is not hidden by other parts, to about a hundredth (m^2).
+    pub fn exposed_area(&self) -> f64 {
+        if self.solids.len() == 1 {
+            return self.area();
+        }
+        self.area() * self.sampler.exposed_share(&self.solids)
+    }
+
     /// Whether every part is closed: each edge of a mesh is used as often in one direction as in the other.
     pub fn watertight(&self) -> bool {
         self.solids.iter().all(Solid::closed)
@@ -138,6 +147,23 @@ impl Surface {
     /// An index that names no mesh triangle, such as -1, only loses the gain.
     pub fn closest_point_from(&self, p: &Vector3<f64>, triangle: i64) -> ClosestPoint {
         self.nearest(p, Some(triangle))
+    }
+
+    /// The point nearest to `p` in the neighbourhood of `triangle` (of an earlier answer): no point next to it is nearer,
+    /// though another part of a surface that is not convex may be. Much faster than
+    /// [`closest_point`](Self::closest_point), and the same where surface and query move by little.
+    ///
+    /// An index that names no mesh triangle, such as -1, gives the nearest point of all.
+    pub fn closest_point_near(&self, p: &Vector3<f64>, triangle: i64) -> ClosestPoint {
+        for solid in &self.solids {
+            if let Solid::Mesh { mesh, first } = solid {
+                if triangle >= *first as i64 && triangle < (first + mesh.triangles.len()) as i64 {
+                    let found = mesh.descend(p, triangle as usize - first, *first);
+                    return found.unwrap_or_else(|| self.nearest(p, Some(triangle)));
+                }
+            }
+        }
+        self.nearest(p, None)
     }
 
     fn nearest(&self, p: &Vector3<f64>, warm_start: Option<i64>) -> ClosestPoint {

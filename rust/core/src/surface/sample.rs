@@ -6,6 +6,7 @@ use super::mesh::Mesh;
 use super::part::Solid;
 use super::primitive::Placed;
 use super::{ClosestPoint, SurfacePoint};
+use crate::random::Stream;
 
 /// Attempts per point asked for, before giving up on a surface that is almost all hidden.
 const ATTEMPTS: u64 = 1000;
@@ -42,10 +43,22 @@ impl Sampler {
     }
 
     pub fn sample(&self, solids: &[Solid], n: usize, seed: u64) -> Vec<SurfacePoint> {
+        self.draw(solids, n, seed).0
+    }
+
+    /// Share of the area that is exposed, from a few thousand points.
+    pub fn exposed_share(&self, solids: &[Solid]) -> f64 {
+        let (points, attempts) = self.draw(solids, 4000, 0);
+        points.len() as f64 / attempts.max(1) as f64
+    }
+
+    /// Points, and how many were tried.
+    fn draw(&self, solids: &[Solid], n: usize, seed: u64) -> (Vec<SurfacePoint>, u64) {
         let mut points = Vec::with_capacity(n);
+        let random = Stream::new(seed);
         let mut attempt = 0u64;
         while points.len() < n && attempt < ATTEMPTS.saturating_mul(n as u64 + 10) {
-            let u = [0, 1, 2, 3].map(|k| uniform(seed, attempt * 4 + k));
+            let u = [0, 1, 2, 3].map(|k| random.uniform(attempt * 4 + k));
             attempt += 1;
             let part = pick(&self.parts, u[0]);
             let point = match &solids[part] {
@@ -59,7 +72,7 @@ impl Sampler {
                 points.push(point);
             }
         }
-        points
+        (points, attempt)
     }
 
     fn exposed(&self, solids: &[Solid], part: usize, sample: &SurfacePoint) -> bool {
@@ -112,17 +125,4 @@ fn on_triangle(mesh: &Mesh, first: usize, id: usize, u: f64, v: f64) -> SurfaceP
         normal: mesh.normals[id],
         triangle: (first + id) as i64,
     }
-}
-
-/// Uniform in [0, 1): the `counter`-th number of the stream `seed` (SplitMix64; Steele, Lea and Flood 2014).
-fn uniform(seed: u64, counter: u64) -> f64 {
-    let start = mix(seed.wrapping_add(0x9e37_79b9_7f4a_7c15));
-    let z = mix(start.wrapping_add(counter.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15)));
-    (z >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
-}
-
-fn mix(mut z: u64) -> u64 {
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
 }

@@ -1,0 +1,98 @@
+//! Particles as columns: one array a quantity.
+
+use nalgebra::Vector3;
+
+macro_rules! columns {
+    ($($(#[$doc:meta])* $name:ident: $kind:ty = $empty:expr,)*) => {
+        /// All particles; entry k of each column belongs to particle k.
+        #[derive(Debug, Clone)]
+        pub struct Columns {
+            $($(#[$doc])* pub $name: Vec<$kind>,)*
+        }
+
+        /// Some neighbouring particles, to be changed.
+        #[derive(Debug)]
+        pub(super) struct Slice<'a> {
+            $(pub $name: &'a mut [$kind],)*
+        }
+
+        impl Columns {
+            pub(super) fn new(count: usize) -> Self {
+                Columns { $($name: vec![$empty; count],)* }
+            }
+
+            pub(super) fn slice(&mut self) -> Slice<'_> {
+                Slice { $($name: &mut self.$name,)* }
+            }
+
+            /// Makes particle k a copy of particle `parents[k]` of `source`.
+            pub(super) fn gather(&mut self, source: &Columns, parents: &[u32]) {
+                $(
+                    for (to, &parent) in self.$name.iter_mut().zip(parents) {
+                        *to = source.$name[parent as usize];
+                    }
+                )*
+            }
+        }
+
+        impl<'a> Slice<'a> {
+            pub(super) fn split_at(self, middle: usize) -> (Slice<'a>, Slice<'a>) {
+                $(let $name = self.$name.split_at_mut(middle);)*
+                (Slice { $($name: $name.0,)* }, Slice { $($name: $name.1,)* })
+            }
+        }
+    };
+}
+
+columns! {
+    /// Index into the robot's links.
+    link: u32 = 0,
+    /// Triangle of the link's surface; -1 on an exact primitive.
+    triangle: i64 = -1,
+    /// Contact point, link frame [m].
+    point: Vector3<f64> = Vector3::zeros(),
+    /// Outward unit normal of the contact, link frame.
+    normal: Vector3<f64> = Vector3::z(),
+    /// What stays put in the world: the obstacle's centre of curvature, or the contact point where that is fixed [m].
+    centre: Vector3<f64> = Vector3::zeros(),
+    /// From the centre to the contact point, negative where the centre is inside the link [m].
+    distance: f64 = 0.0,
+    /// Along the inward normal: the mean of what is believed [N]. Below zero there is a gap.
+    force: f64 = 0.0,
+    /// Mean of what is believed [N/m].
+    stiffness: f64 = 1.0,
+    /// Variance of the force [N^2].
+    force_variance: f64 = 0.0,
+    /// Covariance of force and stiffness.
+    cross_variance: f64 = 0.0,
+    /// Variance of the stiffness.
+    stiffness_variance: f64 = 0.0,
+    /// Logarithm of the weight, not normalised.
+    log_weight: f64 = 0.0,
+    /// Squared norm of the torque of a unit force, each joint over its noise [1/N^2].
+    gain: f64 = 0.0,
+    /// Inner product of that torque with the measured one [1/N].
+    product: f64 = 0.0,
+    /// How far the particle is to be moved at random at its next step, a standard deviation [m].
+    spread: f64 = 0.0,
+    /// Drawn anew from the whole surface, not copied: never weighed yet.
+    fresh: bool = true,
+}
+
+impl Columns {
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.link.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.link.is_empty()
+    }
+}
+
+impl Slice<'_> {
+    pub fn len(&self) -> usize {
+        self.link.len()
+    }
+}

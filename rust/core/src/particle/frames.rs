@@ -1,0 +1,128 @@
+//! Per step and link: pose, and what a force on it does to the joints, all in the link's frame.
+
+use nalgebra::Vector3;
+
+use crate::robot::motion::{motion_axis, split};
+use crate::robot::{Kinematics, Robot, WORLD};
+use crate::spatial::Pose;
+
+/// A joint axis in a link's frame, divided by the joint's noise: its torque under a force at a point is
+/// `linear . force + angular . (point x force)`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Screw {
+    linear: Vector3<f64>,
+    angular: Vector3<f64>,
+    /// Measured torque over its noise.
+    torque: f64,
+}
+
+/// One link that can be in contact.
+#[derive(Debug, Clone)]
+pub(super) struct Frame {
+    pub pose: Pose,
+    /// At the step before.
+    pub before: Pose,
+    /// One a velocity variable that moves the link.
+    screws: Vec<Screw>,
+    /// Sphere around the surface, link frame [m].
+    center: Vector3<f64>,
+    radius: f64,
+}
+
+impl Frame {
+    /// Squared norm of the torques of a unit force along the inward normal, and their product with those measured,
+    /// each joint over its noise (Bimbo 2019, eqs. 6 and 7).
+    #[inline]
+    pub fn response(&self, point: &Vector3<f64>, normal: &Vector3<f64>) -> (f64, f64) {
+        let moment = point.cross(normal);
+        let (mut gain, mut product) = (0.0, 0.0);
+        for screw in &self.screws {
+            let torque = -(screw.linear.dot(normal) + screw.angular.dot(&moment));
+            gain += torque * torque;
+            product += torque * screw.torque;
+        }
+        (gain, product)
+    }
+}
+
+/// The links' frames; one a link of the robot, empty where none is looked for.
+#[derive(Debug, Clone)]
+pub(super) struct Frames {
+    kinematics: Kinematics,
+    pub links: Vec<Frame>,
+    /// Indices of those that can be in contact.
+    pub wanted: Vec<usize>,
+    /// Squared norm of the measured torques, each over its noise.
+    pub measured: f64,
+}
+
+impl Frames {
+    pub fn new(robot: &Robot, wanted: Vec<usize>) -> Self {
+        let links = robot
+            .links()
+            .iter()
+            .map(|link| {
+                let (center, radius) = link
+                    .surface
+                    .as_ref()
+                    .map_or((Vector3::zeros(), 0.0), |surface| surface.bounding_sphere());
+                let count: usize =
+                    robot.chain(link.body).iter().map(|&body| robot.velocity_range(body).len()).sum();
+                let still = Screw { linear: Vector3::zeros(), angular: Vector3::zeros(), torque: 0.0 };
+                Frame {
+                    pose: Pose::identity(),
+                    before: Pose::identity(),
+                    screws: vec![still; if link.body == WORLD { 0 } else { count }],
+                    center,
+                    radius,
+                }
+            })
+            .collect();
+        Frames { kinematics: Kinematics::new(robot), links, wanted, measured: 0.0 }
+    }
+
+    /// Takes on a checked configuration and measured torques with their noise.
+    pub fn update(&mut self, robot: &Robot, q: &[f64], torque: &[f64], noise: &[f64]) {
+        self.kinematics.set_configuration(robot, q);
+        self.measured = torque.iter().zip(noise).map(|(torque, noise)| (torque / noise).powi(2)).sum();
+        for &index in &self.wanted {
+            let frame = &mut self.links[index];
+            frame.before = frame.pose;
+            frame.pose = self.kinematics.link_pose(robot, index);
+            // From the reference origin of the kinematics to the link's.
+            let arm = frame.pose.translation - self.kinematics.origin;
+            let mut screws = frame.screws.iter_mut();
+            for &body in robot.chain(robot.links()[index].body) {
+                let state = &self.kinematics.bodies[body];
+                for (column, k) in robot.velocity_range(body).enumerate() {
+                    let (linear, angular) = split(&motion_axis(robot.bodies[body].kind, state, column));
+                    let linear = linear + angular.cross(&arm);
+                    if let Some(screw) = screws.next() {
+                        screw.linear = frame.pose.inverse_transform_vector(&(linear / noise[k]));
+                        screw.angular = frame.pose.inverse_transform_vector(&(angular / noise[k]));
+                        screw.torque = torque[k] / noise[k];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Forgets the step before: no link has moved.
+    pub fn stand(&mut self) {
+        for &index in &self.wanted {
+            self.links[index].before = self.links[index].pose;
+        }
+    }
+
+    /// How far a point of the robot moved at most since the step before [m].
+    pub fn displacement(&self) -> f64 {
+        let moved = |frame: &Frame| {
+            let centre =
+                frame.pose.transform_point(&frame.center) - frame.before.transform_point(&frame.center);
+            // Chord of the rotation at the rim: |R - R'| by Frobenius is sqrt(2) times that of a unit arm.
+            let turned = (frame.pose.rotation - frame.before.rotation).norm() / std::f64::consts::SQRT_2;
+            centre.norm() + turned * frame.radius
+        };
+        self.wanted.iter().map(|&index| moved(&self.links[index])).fold(0.0, f64::max)
+    }
+}

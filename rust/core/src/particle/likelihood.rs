@@ -1,0 +1,123 @@
+//! How well a particle explains the measured torque.
+
+use super::columns::{Columns, Slice};
+use super::options::Likelihood;
+
+/// What a step of weighing needs to know.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Weighing {
+    pub likelihood: Likelihood,
+    /// Squared norm of the measured torques, each over its noise.
+    pub measured: f64,
+    /// Variance of the torques' error, in units of their noise.
+    pub variance: f64,
+    pub stiffness_range: [f64; 2],
+}
+
+/// A belief about force and stiffness after a measurement, and its weight.
+#[derive(Debug, Clone, Copy)]
+struct Posterior {
+    force: f64,
+    log_weight: f64,
+    /// Share of the variance that is left.
+    left: f64,
+}
+
+impl Weighing {
+    /// Log-likelihood of particle k, as if nothing else had been measured yet; changes nothing.
+    #[inline]
+    pub fn log_likelihood(&self, belief: &Belief) -> f64 {
+        self.posterior(belief).log_weight
+    }
+
+    /// Weighs all particles and updates what they believe of the force.
+    pub fn apply(&self, particles: &mut Slice<'_>) {
+        for k in 0..particles.len() {
+            let belief = Belief {
+                force: particles.force[k],
+                variance: particles.force_variance[k],
+                gain: particles.gain[k],
+                product: particles.product[k],
+            };
+            let posterior = self.posterior(&belief);
+            particles.log_weight[k] += posterior.log_weight;
+            let change = posterior.force - belief.force;
+            if belief.variance > 0.0 && posterior.left < 1.0 {
+                let share = particles.cross_variance[k] / belief.variance;
+                particles.stiffness[k] = (particles.stiffness[k] + share * change)
+                    .clamp(self.stiffness_range[0], self.stiffness_range[1]);
+                particles.stiffness_variance[k] -=
+                    share * particles.cross_variance[k] * (1.0 - posterior.left);
+                particles.force_variance[k] *= posterior.left;
+                particles.cross_variance[k] *= posterior.left;
+                particles.force[k] = posterior.force;
+            }
+        }
+    }
+
+    #[inline]
+    fn posterior(&self, belief: &Belief) -> Posterior {
+        match self.likelihood {
+            Likelihood::Gaussian => self.gaussian(belief),
+            Likelihood::Exponential => self.exponential(belief),
+        }
+    }
+
+    /// The force is linear in the torque, so it is integrated out: a scalar Kalman filter in each particle.
+    #[inline]
+    fn gaussian(&self, belief: &Belief) -> Posterior {
+        let Belief { force, variance, gain, product } = *belief;
+        let gap = Posterior { force, log_weight: -0.5 * self.measured / self.variance, left: 1.0 };
+        if gain <= 0.0 {
+            return gap;
+        }
+        let precision = gain / self.variance;
+        let left = 1.0 / (1.0 + variance * precision);
+        let slope = (product - force * gain) / self.variance;
+        let found = force + variance * left * slope;
+        if found <= 0.0 {
+            // No contact, or one that has just ended.
+            let ended = if force > 0.0 { force * force / variance } else { 0.0 };
+            let force = if force > 0.0 { 0.0 } else { force };
+            return Posterior { force, log_weight: gap.log_weight - 0.5 * ended, ..gap };
+        }
+        let squared = (self.measured - force * (2.0 * product - force * gain)).max(0.0) / self.variance;
+        let explained = slope * slope * variance * left;
+        Posterior { force: found, log_weight: -0.5 * (squared - explained - left.ln()), left }
+    }
+
+    /// The paper's (Bimbo 2019, eq. 5), of the predicted force.
+    #[inline]
+    fn exponential(&self, belief: &Belief) -> Posterior {
+        let force = belief.force.max(0.0);
+        let squared = self.measured - force * (2.0 * belief.product - force * belief.gain);
+        Posterior { force: belief.force, log_weight: -(squared.max(0.0) / self.variance).sqrt(), left: 1.0 }
+    }
+}
+
+/// What a particle believes of its force, and what the force would do.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Belief {
+    pub force: f64,
+    pub variance: f64,
+    pub gain: f64,
+    pub product: f64,
+}
+
+impl Belief {
+    #[inline]
+    pub fn of(particles: &Columns, k: usize) -> Self {
+        Belief {
+            force: particles.force[k],
+            variance: particles.force_variance[k],
+            gain: particles.gain[k],
+            product: particles.product[k],
+        }
+    }
+}
+
+/// Squared norm of the torque that a belief leaves over, in units of the noise.
+pub(super) fn misfit(measured: f64, belief: &Belief) -> f64 {
+    let force = belief.force.max(0.0);
+    (measured - force * (2.0 * belief.product - force * belief.gain)).max(0.0)
+}

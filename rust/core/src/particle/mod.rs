@@ -1,0 +1,27 @@
+//! Contacts anywhere on a robot by a particle filter (Bimbo 2019).
+//!
+//! A particle is a hypothesis: the link, the point on its surface, the obstacle's centre of curvature, the force and
+//! the stiffness of the contact. Its geometry moves with the robot ([`motion`]), its force is weighed against the
+//! measured torque ([`likelihood`]), and particles are drawn anew by their weights ([`resampling`]).
+
+mod adaptation;
+mod birth;
+mod columns;
+mod estimate;
+mod filter;
+mod frames;
+mod likelihood;
+mod modes;
+mod motion;
+mod options;
+mod parallel;
+mod rejuvenation;
+mod resampling;
+mod schedule;
+mod swarm;
+
+pub use columns::Columns;
+pub use estimate::{ContactEstimate, Event, Mode};
+pub use filter::ContactParticleFilter;
+pub use options::{FilterOptions, Likelihood, Motion};
+pub use schedule::Schedule;

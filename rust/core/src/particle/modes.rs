@@ -1,0 +1,323 @@
+//! Clusters of particles on the surface: neighbouring cells of a grid in each link's frame.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::columns::Columns;
+use super::estimate::Mode;
+use super::frames::Frames;
+use crate::robot::Robot;
+
+/// Edge of a cell [m].
+const CELL: f64 = 0.015;
+/// Cells lighter than this share of the heaviest join no clusters.
+const LIGHT: f64 = 0.02;
+/// Modes that are told at most.
+pub(super) const MOST_MODES: usize = 8;
+const EMPTY: u32 = u32::MAX;
+/// Steps uphill to where a mode is densest.
+const CLIMB: usize = 8;
+
+#[derive(Debug, Clone)]
+struct Cell {
+    key: u64,
+    weight: f64,
+    /// Weighted sum of points, link frame [m].
+    sum: Vector3<f64>,
+    /// Another cell of the cluster; itself at the cluster's root.
+    parent: u32,
+    /// Of the cluster, at its root.
+    cluster: Moments,
+}
+
+/// Weighted sums over particles of one link.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Moments {
+    pub weight: f64,
+    point: Vector3<f64>,
+    square: Matrix3<f64>,
+    normal: Vector3<f64>,
+    force: f64,
+    log_stiffness: f64,
+}
+
+impl Moments {
+    fn add(&mut self, particles: &Columns, k: usize, weight: f64) {
+        let point = particles.point[k];
+        let weighted = point * weight;
+        self.weight += weight;
+        self.point += weighted;
+        self.square += weighted * point.transpose();
+        self.normal += particles.normal[k] * weight;
+        self.force += weight * particles.force[k].max(0.0);
+        self.log_stiffness += weight * particles.stiffness[k].ln();
+    }
+
+    fn join(&mut self, other: &Moments) {
+        self.weight += other.weight;
+        self.point += other.point;
+        self.square += other.square;
+        self.normal += other.normal;
+        self.force += other.force;
+        self.log_stiffness += other.log_stiffness;
+    }
+
+    /// Root of the mean squared distance from the mean [m].
+    fn spread(&self) -> f64 {
+        let mean = self.point / self.weight;
+        (self.square.trace() / self.weight - mean.norm_squared()).max(0.0).sqrt()
+    }
+
+    /// Weighted second moment about `centre` (link frame), not divided by the weight.
+    fn about(&self, centre: &Vector3<f64>) -> Matrix3<f64> {
+        self.square - self.point * centre.transpose() - centre * self.point.transpose()
+            + centre * centre.transpose() * self.weight
+    }
+}
+
+/// Buffers for finding modes.
+#[derive(Debug, Clone)]
+pub(super) struct Modes {
+    slots: Vec<u32>,
+    cells: Vec<Cell>,
+    roots: Vec<u32>,
+    /// One a link of the robot.
+    links: Vec<Moments>,
+    pub found: Vec<Mode>,
+    /// Mean spread within modes [m].
+    pub spread: f64,
+}
+
+impl Modes {
+    pub fn new(particles: usize, links: usize) -> Self {
+        Modes {
+            slots: vec![EMPTY; (2 * particles).next_power_of_two()],
+            cells: Vec::with_capacity(particles),
+            roots: Vec::with_capacity(particles),
+            links: vec![Moments::default(); links],
+            found: Vec::with_capacity(MOST_MODES),
+            spread: 0.0,
+        }
+    }
+
+    /// Weight of the particles on a link.
+    pub fn on_link(&self, link: usize) -> f64 {
+        self.links[link].weight
+    }
+
+    /// Second moment of all particles about a point, world frame [m^2].
+    pub fn covariance(&self, frames: &Frames, point: &Vector3<f64>) -> Matrix3<f64> {
+        let mut sum = Matrix3::zeros();
+        for &link in &frames.wanted {
+            let pose = &frames.links[link].pose;
+            let local = pose.inverse_transform_point(point);
+            sum += pose.rotation * self.links[link].about(&local) * pose.rotation.transpose();
+        }
+        sum
+    }
+
+    /// Finds the modes of weighted particles (the weights sum to one), best first.
+    pub fn find(&mut self, robot: &Robot, frames: &Frames, particles: &Columns, weights: &[f64]) {
+        self.slots.fill(EMPTY);
+        self.cells.clear();
+        self.links.fill(Moments::default());
+        for (k, &weight) in weights.iter().enumerate() {
+            if weight > 0.0 {
+                let link = particles.link[k];
+                let cell = self.cell(key(link, &cell_of(&particles.point[k])));
+                let cell = &mut self.cells[cell];
+                cell.weight += weight;
+                cell.sum += particles.point[k] * weight;
+                cell.cluster.add(particles, k, weight);
+            }
+        }
+        for cell in &self.cells {
+            self.links[(cell.key >> 48) as usize].join(&cell.cluster);
+        }
+        self.connect();
+        self.rank();
+        self.found.clear();
+        let (mut spread, mut told) = (0.0, 0.0);
+        for index in 0..self.roots.len().min(MOST_MODES) {
+            let mode = self.describe(robot, frames, self.roots[index]);
+            spread += mode.probability * mode.spread;
+            told += mode.probability;
+            self.found.push(mode);
+        }
+        self.spread = if told > 0.0 { spread / told } else { 0.0 };
+    }
+
+    /// Index of the cell with a key, made where there is none.
+    fn cell(&mut self, key: u64) -> usize {
+        let mask = self.slots.len() - 1;
+        let mut slot = hash(key) & mask;
+        loop {
+            match self.slots[slot] {
+                EMPTY => {
+                    let index = self.cells.len();
+                    self.slots[slot] = index as u32;
+                    self.cells.push(Cell {
+                        key,
+                        weight: 0.0,
+                        sum: Vector3::zeros(),
+                        parent: index as u32,
+                        cluster: Moments::default(),
+                    });
+                    return index;
+                }
+                index if self.cells[index as usize].key == key => return index as usize,
+                _ => slot = (slot + 1) & mask,
+            }
+        }
+    }
+
+    fn known(&self, key: u64) -> Option<usize> {
+        let mask = self.slots.len() - 1;
+        let mut slot = hash(key) & mask;
+        loop {
+            match self.slots[slot] {
+                EMPTY => return None,
+                index if self.cells[index as usize].key == key => return Some(index as usize),
+                _ => slot = (slot + 1) & mask,
+            }
+        }
+    }
+
+    fn root(&self, mut cell: u32) -> u32 {
+        while self.cells[cell as usize].parent != cell {
+            cell = self.cells[cell as usize].parent;
+        }
+        cell
+    }
+
+    /// Joins cells that touch, and gathers their moments at the roots.
+    fn connect(&mut self) {
+        let heaviest = self.cells.iter().map(|cell| cell.weight).fold(0.0, f64::max);
+        let cutoff = LIGHT * heaviest;
+        for index in 0..self.cells.len() {
+            if self.cells[index].weight < cutoff {
+                continue;
+            }
+            let key = self.cells[index].key;
+            // Half of the neighbours: the others find this one.
+            for offset in NEIGHBOURS {
+                let Some(other) = self.known(key.wrapping_add(offset)) else { continue };
+                if self.cells[other].weight < cutoff {
+                    continue;
+                }
+                let (a, b) = (self.root(index as u32), self.root(other as u32));
+                if a != b {
+                    // The heavier cell is the root, so that a root is its cluster's heaviest.
+                    let (root, child) = if self.cells[a as usize].weight >= self.cells[b as usize].weight {
+                        (a, b)
+                    } else {
+                        (b, a)
+                    };
+                    self.cells[child as usize].parent = root;
+                    let joined = self.cells[child as usize].cluster;
+                    self.cells[root as usize].cluster.join(&joined);
+                }
+            }
+        }
+    }
+
+    fn rank(&mut self) {
+        self.roots.clear();
+        for index in 0..self.cells.len() as u32 {
+            if self.cells[index as usize].parent == index {
+                self.roots.push(index);
+            }
+        }
+        let cells = &self.cells;
+        let weight = |index: &u32| cells[*index as usize].cluster.weight;
+        let told = MOST_MODES.min(self.roots.len());
+        if told > 0 && told < self.roots.len() {
+            self.roots
+                .select_nth_unstable_by(told - 1, |a, b| weight(b).total_cmp(&weight(a)).then(a.cmp(b)));
+        }
+        self.roots[..told].sort_unstable_by(|a, b| weight(b).total_cmp(&weight(a)).then(a.cmp(b)));
+    }
+
+    fn describe(&self, robot: &Robot, frames: &Frames, root: u32) -> Mode {
+        let cell = &self.cells[root as usize];
+        let link = (cell.key >> 48) as usize;
+        let moments = &cell.cluster;
+        let spread = moments.spread();
+        let densest = self.climb(root, spread);
+        let pose = &frames.links[link].pose;
+        let mut point = densest;
+        let mut normal = moments.normal / moments.weight;
+        if let Some(surface) = robot.links()[link].surface.as_ref() {
+            let near = surface.closest_point(&densest);
+            point = near.point;
+            if normal.norm() < 0.7 {
+                normal = near.normal; // the mode goes around an edge or the link
+            }
+        }
+        let normal = pose.rotation * normal.normalize();
+        Mode {
+            link,
+            point: pose.transform_point(&point),
+            force: normal * (-moments.force / moments.weight),
+            normal,
+            stiffness: (moments.log_stiffness / moments.weight).exp(),
+            probability: moments.weight,
+            spread,
+        }
+    }
+
+    /// Where a cluster is densest: mean shift over its cells (Cheng 1995), from the heaviest. The kernel is as wide as
+    /// the cluster, so that a compact one gives its mean.
+    fn climb(&self, root: u32, spread: f64) -> Vector3<f64> {
+        let start = &self.cells[root as usize];
+        if spread < CELL {
+            return start.cluster.point / start.cluster.weight;
+        }
+        let mut at = start.sum / start.weight;
+        for _ in 0..CLIMB {
+            let (mut sum, mut total) = (Vector3::zeros(), 0.0);
+            for (index, cell) in self.cells.iter().enumerate() {
+                if cell.key >> 48 == start.key >> 48 && self.root(index as u32) == root {
+                    let mean = cell.sum / cell.weight;
+                    let weight = cell.weight * (-0.5 * (mean - at).norm_squared() / (spread * spread)).exp();
+                    sum += mean * weight;
+                    total += weight;
+                }
+            }
+            at = sum / total;
+        }
+        at
+    }
+}
+
+fn cell_of(point: &Vector3<f64>) -> [u64; 3] {
+    // 2^15 cells either way are 490 m; farther out they fall together.
+    [0, 1, 2].map(|k| ((point[k] / CELL).floor().clamp(-32_000.0, 32_000.0) + 32_768.0) as u64)
+}
+
+fn key(link: u32, [x, y, z]: &[u64; 3]) -> u64 {
+    u64::from(link) << 48 | x << 32 | y << 16 | z
+}
+
+fn hash(key: u64) -> usize {
+    (key.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 24) as usize
+}
+
+/// Offsets of keys to one half of the 26 neighbours.
+const NEIGHBOURS: [u64; 13] = {
+    let (x, y, z) = (1u64 << 32, 1u64 << 16, 1u64);
+    [
+        z,
+        y,
+        y.wrapping_add(z),
+        y.wrapping_sub(z),
+        x,
+        x.wrapping_add(z),
+        x.wrapping_sub(z),
+        x.wrapping_add(y),
+        x.wrapping_sub(y),
+        x.wrapping_add(y).wrapping_add(z),
+        x.wrapping_add(y).wrapping_sub(z),
+        x.wrapping_sub(y).wrapping_add(z),
+        x.wrapping_sub(y).wrapping_sub(z),
+    ]
+};

@@ -1,0 +1,144 @@
+//! How a particle moves with the robot: three models.
+
+use nalgebra::Vector3;
+
+use super::birth::Births;
+use super::columns::Slice;
+use super::frames::Frames;
+use super::options::Motion;
+use super::schedule::Noise;
+use crate::random::Stream;
+use crate::robot::Robot;
+use crate::surface::{ClosestPoint, Surface};
+
+/// Random numbers a particle and step uses at most.
+const DRAWS: u64 = 4;
+/// Every so many steps the nearest point is looked for on the whole link, in between next to the last one.
+const REFRESH: u64 = 16;
+
+/// What a step of motion needs to know.
+#[derive(Debug, Clone)]
+pub(super) struct Move {
+    pub motion: Motion,
+    /// Logarithms of the least and the greatest radius.
+    pub log_radius: [f64; 2],
+    pub noise: Noise,
+    /// Standard deviation of the force of particles that are not tied to an obstacle [N].
+    pub loose_force: f64,
+    pub stiffness_range: [f64; 2],
+    /// Whether a force is drawn from what is believed of it, and the stiffness moved at random.
+    pub sampled: bool,
+    pub random: Stream,
+    pub step: u64,
+}
+
+impl Move {
+    /// Moves particles, of which the first has the number `start`, to the present pose.
+    pub fn apply(
+        &self,
+        robot: &Robot,
+        frames: &Frames,
+        births: &Births,
+        start: usize,
+        particles: &mut Slice<'_>,
+    ) {
+        for k in 0..particles.len() {
+            let Some(surface) = robot.links()[particles.link[k] as usize].surface.as_ref() else { continue };
+            let number = (start + k) as u64;
+            match self.motion {
+                Motion::Curvature => self.roll(surface, frames, number, particles, k),
+                // The contact moves with the link (the first baseline).
+                Motion::FixedOnLink => particles.force_variance[k] += self.loose_force.powi(2),
+                Motion::FixedInWorld => self.stay_in_world(surface, frames, particles, k),
+            }
+            let frame = &frames.links[particles.link[k] as usize];
+            let (gain, product) = frame.response(&particles.point[k], &particles.normal[k]);
+            particles.gain[k] = gain;
+            particles.product[k] = product;
+            if particles.fresh[k] {
+                particles.fresh[k] = false;
+                (particles.force[k], particles.force_variance[k]) = births.force(gain, product);
+            }
+            if self.sampled {
+                self.draw(number, particles, k);
+            }
+        }
+    }
+
+    /// Draws force and stiffness at random (Bimbo 2019, after eq. 8).
+    fn draw(&self, number: u64, particles: &mut Slice<'_>, k: usize) {
+        let [force, stiffness] = self.random.normals(number * DRAWS + 2);
+        let [low, high] = self.stiffness_range;
+        particles.force[k] += force * particles.force_variance[k].sqrt();
+        particles.force_variance[k] = 0.0;
+        particles.stiffness[k] =
+            (particles.stiffness[k] * (self.noise.stiffness * stiffness).exp()).clamp(low, high);
+    }
+
+    /// The obstacle stays, and the contact is the point nearest to its centre of curvature (Bimbo 2019, eq. 8).
+    fn roll(&self, surface: &Surface, frames: &Frames, number: u64, particles: &mut Slice<'_>, k: usize) {
+        let frame = &frames.links[particles.link[k] as usize];
+        let draw = number * DRAWS;
+        let whole = particles.fresh[k] || (number + self.step).is_multiple_of(REFRESH);
+
+        if self.random.uniform(draw) < self.noise.redraw {
+            let [low, high] = self.log_radius;
+            let radius = (low + (high - low) * self.random.uniform(draw + 1)).exp();
+            let centre = particles.point[k] + particles.normal[k] * radius;
+            particles.centre[k] = frame.before.transform_point(&centre);
+            particles.distance[k] = radius;
+        }
+        let local = frame.pose.inverse_transform_point(&particles.centre[k]);
+        let triangle = particles.triangle[k];
+        let near = if whole {
+            surface.closest_point_from(&local, triangle)
+        } else {
+            surface.closest_point_near(&local, triangle)
+        };
+        let (distance, normal) = signed(&near, &local);
+        let change = particles.distance[k] - distance;
+        particles.distance[k] = distance;
+        place(particles, k, &near, normal);
+        if particles.fresh[k] {
+            return; // its force is yet to be set
+        }
+        particles.force[k] += change * particles.stiffness[k];
+        let [cross, stiffness] = [particles.cross_variance[k], particles.stiffness_variance[k]];
+        particles.force_variance[k] += 2.0 * change * cross
+            + change * change * stiffness
+            + (self.noise.force * particles.force[k]).powi(2)
+            + (self.noise.distance * particles.stiffness[k]).powi(2);
+        particles.cross_variance[k] += change * stiffness;
+    }
+
+    /// The contact stays where it is in the world (the second baseline).
+    fn stay_in_world(&self, surface: &Surface, frames: &Frames, particles: &mut Slice<'_>, k: usize) {
+        let frame = &frames.links[particles.link[k] as usize];
+        let fixed = frame.before.transform_point(&particles.point[k]);
+        let near =
+            surface.closest_point_near(&frame.pose.inverse_transform_point(&fixed), particles.triangle[k]);
+        place(particles, k, &near, near.normal);
+        particles.force_variance[k] += self.loose_force.powi(2);
+    }
+}
+
+/// Nearer than this the direction to the nearest point is lost to rounding [m].
+const TOUCHING: f64 = 1e-7;
+
+/// Distance and outward normal at the nearest point: a centre inside the link has a negative distance.
+pub(super) fn signed(near: &ClosestPoint, local: &Vector3<f64>) -> (f64, Vector3<f64>) {
+    let apart = local - near.point;
+    if near.distance < TOUCHING {
+        return (near.distance, near.normal);
+    }
+    // On an edge or a corner the direction is between the faces' normals.
+    let side = if apart.dot(&near.normal) < 0.0 { -1.0 } else { 1.0 };
+    (side * near.distance, apart * (side / near.distance))
+}
+
+/// Puts a particle at a point of its link's surface.
+pub(super) fn place(particles: &mut Slice<'_>, k: usize, near: &ClosestPoint, normal: Vector3<f64>) {
+    particles.point[k] = near.point;
+    particles.normal[k] = normal;
+    particles.triangle[k] = near.triangle;
+}

@@ -1,0 +1,156 @@
+//! What a filter is told, and checks of it.
+
+use std::ops::RangeInclusive;
+
+use super::schedule::Schedule;
+use crate::error::{Error, Result};
+use crate::robot::{Robot, WORLD};
+
+/// How a contact moves with the robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Motion {
+    /// The obstacle stays, convex and springy (Bimbo 2019, eq. 8).
+    #[default]
+    Curvature,
+    /// The contact point is fixed to the link (a baseline).
+    FixedOnLink,
+    /// The contact point is fixed in the world (a baseline).
+    FixedInWorld,
+}
+
+/// How errors of torque are weighed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Likelihood {
+    /// Gaussian, with noise per joint; the force is integrated out.
+    #[default]
+    Gaussian,
+    /// `exp(-alpha |tau_hat - tau_ext|)` with a force drawn at random (Bimbo 2019, eq. 5).
+    Exponential,
+}
+
+/// Options of a [`ContactParticleFilter`](super::ContactParticleFilter).
+#[derive(Debug, Clone, PartialEq)]
+pub struct FilterOptions {
+    /// How many particles.
+    pub particles: usize,
+    /// How contacts move.
+    pub motion: Motion,
+    /// How errors of torque are weighed.
+    pub likelihood: Likelihood,
+    /// Names of the links to look on; all that move and have a surface by default.
+    pub links: Option<Vec<String>>,
+    /// Same seed, same answer, for any number of threads.
+    pub seed: u64,
+    /// Least and greatest force at the start [N].
+    pub force_range: [f64; 2],
+    /// Least and greatest contact stiffness [N/m].
+    pub stiffness_range: [f64; 2],
+    /// Least and greatest radius of the obstacle's curvature [m].
+    pub radius_range: [f64; 2],
+    /// Standard deviation of a torque at rest, one for all or one a joint [Nm; N for a sliding joint].
+    pub torque_noise: Vec<f64>,
+    /// Standard deviation of a torque relative to its size.
+    pub relative_noise: f64,
+    /// Below it on every joint there is no contact, one for all or one a joint [Nm].
+    pub torque_threshold: Vec<f64>,
+    /// How sharpness and noise change.
+    pub schedule: Schedule,
+    /// How many threads share a step.
+    pub threads: usize,
+}
+
+impl Default for FilterOptions {
+    fn default() -> Self {
+        FilterOptions {
+            particles: 10_000,
+            motion: Motion::default(),
+            likelihood: Likelihood::default(),
+            links: None,
+            seed: 0,
+            force_range: [1.0, 100.0],
+            stiffness_range: [3e2, 3e4],
+            radius_range: [5e-3, 1.0],
+            torque_noise: vec![0.02],
+            relative_noise: 0.03,
+            torque_threshold: vec![0.06],
+            schedule: Schedule::Adaptive,
+            threads: 1,
+        }
+    }
+}
+
+/// As many particles or threads at most.
+const MOST_PARTICLES: usize = 10_000_000;
+const MOST_THREADS: usize = 256;
+
+impl FilterOptions {
+    /// Indices of the links to look on.
+    pub(super) fn check(&self, robot: &Robot) -> Result<Vec<usize>> {
+        whole("particles", self.particles, 1..=MOST_PARTICLES)?;
+        whole("threads", self.threads, 1..=MOST_THREADS)?;
+        range("force_range", self.force_range)?;
+        range("stiffness_range", self.stiffness_range)?;
+        range("radius_range", self.radius_range)?;
+        if !(self.relative_noise.is_finite() && self.relative_noise >= 0.0) {
+            return Err(Error::Input(format!(
+                "relative_noise: must be zero or a positive number, got {}",
+                self.relative_noise
+            )));
+        }
+        self.schedule.check()?;
+        let moving = |&index: &usize| robot.links()[index].body != WORLD;
+        let all: Vec<usize> = robot.touchable_links().iter().copied().filter(moving).collect();
+        if all.is_empty() {
+            return Err(Error::Input(
+                "robot: no link that moves has a surface; a particle filter needs one to look on".into(),
+            ));
+        }
+        let Some(names) = &self.links else { return Ok(all) };
+        if names.is_empty() {
+            return Err(Error::Input("links: must name at least one link".into()));
+        }
+        let mut wanted = Vec::with_capacity(names.len());
+        for name in names {
+            let found = all.iter().copied().find(|&index| &robot.links()[index].name == name);
+            let Some(index) = found else {
+                let links: Vec<&str> = all.iter().map(|&index| robot.links()[index].name.as_str()).collect();
+                return Err(Error::Input(format!(
+                    "links: there is no link '{name}' that moves and has a surface; there are {}",
+                    links.join(", ")
+                )));
+            };
+            if !wanted.contains(&index) {
+                wanted.push(index);
+            }
+        }
+        wanted.sort_unstable();
+        Ok(wanted)
+    }
+
+    /// One positive number a velocity variable.
+    pub(super) fn per_joint(name: &str, values: &[f64], nv: usize) -> Result<Vec<f64>> {
+        let all = if values.len() == 1 { vec![values[0]; nv] } else { values.to_vec() };
+        if all.len() != nv {
+            return Err(Error::Input(format!("{name}: expected 1 or {nv} numbers, got {}", values.len())));
+        }
+        match all.iter().find(|x| !(x.is_finite() && **x > 0.0)) {
+            Some(value) => Err(Error::Input(format!("{name}: must be positive, got {value}"))),
+            None => Ok(all),
+        }
+    }
+}
+
+fn whole(name: &str, value: usize, range: RangeInclusive<usize>) -> Result<()> {
+    if range.contains(&value) {
+        return Ok(());
+    }
+    let (low, high) = range.into_inner();
+    Err(Error::Input(format!("{name}: must be a whole number from {low} to {high}, got {value}")))
+}
+
+fn range(name: &str, [low, high]: [f64; 2]) -> Result<()> {
+    if low > 0.0 && low <= high && high < 1e12 {
+        return Ok(());
+    }
+    Err(Error::Input(format!("{name}: must be two positive numbers, the lesser first, got {low} and {high}")))
+}

@@ -1,0 +1,75 @@
+//! Copies are moved apart along the surface, so that they explain the torques as well as before.
+
+use nalgebra::Vector3;
+
+use super::columns::Slice;
+use super::frames::Frames;
+use super::motion::{place, signed};
+use super::options::Motion;
+use crate::random::Stream;
+use crate::robot::Robot;
+
+/// Random numbers a particle uses at most.
+const DRAWS: u64 = 4;
+
+/// What moving particles apart needs to know.
+#[derive(Debug, Clone)]
+pub(super) struct Rejuvenation {
+    pub motion: Motion,
+    /// Whether force and stiffness go along, so that the torque stays.
+    pub keep_torque: bool,
+    pub stiffness_range: [f64; 2],
+    /// Forces are not raised above it [N].
+    pub most_force: f64,
+    pub random: Stream,
+}
+
+impl Rejuvenation {
+    /// Moves each particle by its `spread`, at the present pose; the first one has the number `start`.
+    pub fn apply(&self, robot: &Robot, frames: &Frames, start: usize, particles: &mut Slice<'_>) {
+        for k in 0..particles.len() {
+            let spread = particles.spread[k];
+            let Some(surface) = robot.links()[particles.link[k] as usize].surface.as_ref() else { continue };
+            if spread <= 0.0 {
+                continue;
+            }
+            particles.spread[k] = 0.0;
+            let frame = &frames.links[particles.link[k] as usize];
+            let [along, across] = self.random.normals((start + k) as u64 * DRAWS);
+            let aside = tangent(&particles.normal[k], along * spread, across * spread);
+            if self.motion == Motion::Curvature {
+                let local = frame.pose.inverse_transform_point(&particles.centre[k]) + aside;
+                let near = surface.closest_point_near(&local, particles.triangle[k]);
+                let (distance, normal) = signed(&near, &local);
+                particles.centre[k] = frame.pose.transform_point(&local);
+                particles.distance[k] = distance;
+                place(particles, k, &near, normal);
+            } else {
+                let near = surface.closest_point_near(&(particles.point[k] + aside), particles.triangle[k]);
+                place(particles, k, &near, near.normal);
+            }
+            if particles.fresh[k] || !self.keep_torque {
+                continue;
+            }
+            let (gain, product) = frame.response(&particles.point[k], &particles.normal[k]);
+            let scale = (product * particles.gain[k]) / (gain * particles.product[k]);
+            if scale > 0.0 && particles.force[k] * scale < self.most_force {
+                let [low, high] = self.stiffness_range;
+                particles.force[k] *= scale;
+                particles.stiffness[k] = (particles.stiffness[k] * scale).clamp(low, high);
+                particles.force_variance[k] *= scale * scale;
+                particles.cross_variance[k] *= scale * scale;
+                particles.stiffness_variance[k] *= scale * scale;
+            }
+            particles.gain[k] = gain;
+            particles.product[k] = product;
+        }
+    }
+}
+
+/// A vector across `normal`.
+fn tangent(normal: &Vector3<f64>, along: f64, across: f64) -> Vector3<f64> {
+    let apart = if normal.x.abs() < 0.8 { Vector3::x() } else { Vector3::y() };
+    let first = normal.cross(&apart).normalize();
+    first * along + normal.cross(&first) * across
+}

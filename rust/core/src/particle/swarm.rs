@@ -1,0 +1,330 @@
+//! All that an update works on, and its course.
+
+use std::sync::Arc;
+
+use super::adaptation::Adaptation;
+use super::birth::Births;
+use super::columns::{Columns, Slice};
+use super::estimate::{ContactEstimate, Event};
+use super::frames::Frames;
+use super::likelihood::{misfit, Belief, Weighing};
+use super::modes::{Modes, MOST_MODES};
+use super::motion::Move;
+use super::options::{FilterOptions, Likelihood, Motion};
+use super::parallel;
+use super::rejuvenation::Rejuvenation;
+use super::resampling::{effective_share, normalise, systematic};
+use super::schedule::Noise;
+use crate::error::Result;
+use crate::random::Stream;
+use crate::robot::Robot;
+
+/// A contact ends below this share of the thresholds at which it begins.
+const RELEASE: f64 = 1.0 / 3.0;
+/// A link that moves farther between two updates has jumped [m].
+const JUMP: f64 = 0.2;
+/// Updates in a row that nothing explains before the search begins anew.
+const PATIENCE: u32 = 5;
+/// Particles are drawn anew below this share of effective ones.
+const RESAMPLE: f64 = 0.5;
+/// As many are weighed to choose the sharpness.
+const PROBES: usize = 1024;
+/// A likelihood is widened so often at most, each time to twice the variance.
+const WIDENINGS: usize = 40;
+
+/// Streams of random numbers, one a purpose and step.
+#[derive(Clone, Copy)]
+enum Purpose {
+    Motion,
+    Birth,
+    Comb,
+    Rejuvenation,
+}
+
+#[derive(Debug)]
+pub(super) struct Swarm {
+    robot: Arc<Robot>,
+    options: FilterOptions,
+    torque_noise: Vec<f64>,
+    threshold: Vec<f64>,
+    /// The measurement: torques, and their noise.
+    torque: Vec<f64>,
+    noise: Vec<f64>,
+    felt: bool,
+    pub frames: Frames,
+    births: Births,
+    pub particles: Columns,
+    spare: Columns,
+    pub weights: Vec<f64>,
+    parents: Vec<u32>,
+    modes: Modes,
+    pub estimate: ContactEstimate,
+    random: Stream,
+    adaptation: Adaptation,
+    /// Updates since the start or the last reset.
+    step: u64,
+    /// Updates since the particles were last spread.
+    age: u64,
+    /// Updates in a row that no particle explained.
+    unexplained: u32,
+}
+
+impl Swarm {
+    pub fn new(robot: Arc<Robot>, options: FilterOptions) -> Result<Self> {
+        let wanted = options.check(&robot)?;
+        let nv = robot.nv();
+        let count = options.particles;
+        Ok(Self {
+            torque_noise: FilterOptions::per_joint("torque_noise", &options.torque_noise, nv)?,
+            threshold: FilterOptions::per_joint("torque_threshold", &options.torque_threshold, nv)?,
+            torque: vec![0.0; nv],
+            noise: vec![1.0; nv],
+            felt: false,
+            births: Births::new(&robot, &wanted, &options),
+            estimate: ContactEstimate::new(wanted.len(), MOST_MODES),
+            frames: Frames::new(&robot, wanted),
+            particles: Columns::new(count),
+            spare: Columns::new(count),
+            weights: vec![1.0 / count as f64; count],
+            parents: vec![0; count],
+            modes: Modes::new(count, robot.links().len()),
+            random: Stream::new(options.seed),
+            adaptation: Adaptation::default(),
+            step: 0,
+            age: 0,
+            unexplained: 0,
+            robot,
+            options,
+        })
+    }
+
+    pub fn reset(&mut self) {
+        self.step = 0;
+        self.felt = false;
+        self.estimate.clear();
+        self.estimate.event = Event::None;
+        self.estimate.updates = 0;
+        self.particles = Columns::new(self.particles.len());
+        self.weights.fill(1.0 / self.particles.len() as f64);
+    }
+
+    /// Takes in a measurement.
+    pub fn read(&mut self, q: &[f64], tau_ext: &[f64]) -> Result<()> {
+        self.robot.check_configuration(q)?;
+        self.robot.check_tangent("tau_ext", tau_ext)?;
+        self.torque.copy_from_slice(tau_ext);
+        for ((noise, least), tau) in self.noise.iter_mut().zip(&self.torque_noise).zip(tau_ext) {
+            *noise = match self.options.likelihood {
+                Likelihood::Gaussian => least.hypot(self.options.relative_noise * tau),
+                Likelihood::Exponential => 1.0,
+            };
+        }
+        self.frames.update(&self.robot, q, tau_ext, &self.noise);
+        Ok(())
+    }
+
+    /// Updates particles and estimate by the measurement that was read.
+    pub fn step(&mut self) {
+        let moved = if self.step == 0 { 0.0 } else { self.frames.displacement() };
+        let event = self.notice(moved);
+        if self.step == 0 || matches!(event, Event::Started | Event::Jumped | Event::Changed) {
+            self.spread();
+        }
+        let noise = Noise::at(&self.options, self.age, moved);
+        self.predict(&noise);
+        let effective = self.weigh(moved, &noise);
+        self.modes.find(&self.robot, &self.frames, &self.particles, &self.weights);
+        let left = self.judge();
+        self.tell(event, effective, left);
+        if effective < RESAMPLE * self.particles.len() as f64 {
+            self.resample(&noise, moved, left);
+        }
+        self.step += 1;
+        self.age += 1;
+        self.estimate.updates = self.step;
+    }
+
+    fn stream(&self, purpose: Purpose) -> Stream {
+        self.random.fork(4 * self.step + purpose as u64)
+    }
+
+    fn threads(&self) -> usize {
+        self.options.threads
+    }
+
+    /// Whether a contact begins, goes on or ends.
+    fn notice(&mut self, moved: f64) -> Event {
+        // What was felt once is felt until it is all but gone.
+        let share = if self.felt { RELEASE } else { 1.0 };
+        let mut over = self.torque.iter().zip(&self.threshold);
+        let felt = over.any(|(torque, threshold)| torque.abs() > share * threshold);
+        let before = std::mem::replace(&mut self.felt, felt);
+        match (before, felt) {
+            (false, false) => Event::None,
+            (false, true) => Event::Started,
+            (true, false) => Event::Lost,
+            (true, true) if moved > JUMP => Event::Jumped,
+            (true, true) if self.unexplained >= PATIENCE => Event::Changed,
+            (true, true) => Event::Continued,
+        }
+    }
+
+    /// Begins the search anew.
+    fn spread(&mut self) {
+        self.frames.stand();
+        let random = self.stream(Purpose::Birth);
+        self.births.spread(&self.frames, &random, &mut self.particles);
+        self.rejuvenate();
+        self.adaptation = Adaptation::default();
+        self.age = 0;
+        self.unexplained = 0;
+    }
+
+    fn predict(&mut self, noise: &Noise) {
+        let motion = Move {
+            motion: self.options.motion,
+            log_radius: self.options.radius_range.map(f64::ln),
+            noise: *noise,
+            loose_force: self.options.force_range[1],
+            stiffness_range: self.options.stiffness_range,
+            sampled: self.options.likelihood == Likelihood::Exponential,
+            random: self.stream(Purpose::Motion),
+            step: self.step,
+        };
+        let threads = self.threads();
+        let Self { robot, frames, births, particles, .. } = self;
+        let work =
+            |start: usize, mut slice: Slice<'_>| motion.apply(robot, frames, births, start, &mut slice);
+        parallel::for_each(particles.slice(), 0, threads, &work);
+    }
+
+    /// Weighs the particles; returns how many are effective.
+    fn weigh(&mut self, moved: f64, noise: &Noise) -> f64 {
+        let mut weighing = Weighing {
+            likelihood: self.options.likelihood,
+            measured: self.frames.measured,
+            variance: 1.0,
+            stiffness_range: self.options.stiffness_range,
+        };
+        if let Some(sharpness) = noise.sharpness {
+            let unit = match self.options.likelihood {
+                Likelihood::Exponential => 1.0,
+                Likelihood::Gaussian => self.torque_noise.iter().copied().fold(f64::INFINITY, f64::min),
+            };
+            weighing.variance = 1.0 / (sharpness * unit).powi(2);
+        } else {
+            let active = self.active_joints();
+            weighing.variance = self.adaptation.sharpest(moved, active, self.age);
+            let widenings = if self.particles.len() < 2 { 0 } else { WIDENINGS };
+            for _ in 0..widenings {
+                if self.probe(&weighing) >= self.adaptation.effective_share() {
+                    break;
+                }
+                weighing.variance *= 2.0;
+            }
+            self.adaptation.weighed(weighing.variance);
+        }
+        let threads = self.threads();
+        let work = |_: usize, mut slice: Slice<'_>| weighing.apply(&mut slice);
+        parallel::for_each(self.particles.slice(), 0, threads, &work);
+        normalise(&mut self.particles.log_weight, &mut self.weights)
+    }
+
+    /// Share of particles that would be effective after a weighing.
+    fn probe(&self, weighing: &Weighing) -> f64 {
+        let particles = &self.particles;
+        let stride = particles.len().div_ceil(PROBES);
+        effective_share(particles.len(), stride, |k| {
+            particles.log_weight[k] + weighing.log_likelihood(&Belief::of(particles, k))
+        })
+    }
+
+    /// How many joints feel the contact.
+    fn active_joints(&self) -> usize {
+        self.torque
+            .iter()
+            .zip(&self.torque_noise)
+            .filter(|(torque, noise)| torque.abs() > 3.0 * **noise)
+            .count()
+    }
+
+    /// Learns from what the particles leave over; returns the best one's part of the measured torque.
+    fn judge(&mut self) -> f64 {
+        let measured = self.frames.measured;
+        let (mut best, mut greatest) = (0, -1.0);
+        for (k, &weight) in self.weights.iter().enumerate() {
+            if weight > greatest {
+                (best, greatest) = (k, weight);
+            }
+        }
+        let left = misfit(measured, &Belief::of(&self.particles, best));
+        self.adaptation.learn(left, self.active_joints());
+        if measured > 0.0 {
+            (left / measured).sqrt()
+        } else {
+            0.0
+        }
+    }
+
+    fn tell(&mut self, event: Event, effective: f64, left: f64) {
+        let explained = left < UNEXPLAINED;
+        self.unexplained = if explained { 0 } else { self.unexplained + 1 };
+        let norm = self.torque.iter().map(|torque| torque * torque).sum::<f64>().sqrt();
+        let Self { estimate, modes, frames, .. } = self;
+        estimate.clear();
+        estimate.event = event;
+        estimate.effective_samples = effective;
+        estimate.residual = left * norm;
+        estimate.explained = explained;
+        if self.felt {
+            let springy = self.options.motion == Motion::Curvature;
+            estimate.set_contact(modes, frames, springy);
+        }
+    }
+
+    fn resample(&mut self, noise: &Noise, moved: f64, left: f64) {
+        let count = self.particles.len();
+        let anew = ((Adaptation::fresh_share(left) * count as f64) as usize).min(count - 1);
+        let kept = count - anew;
+        let offset = self.stream(Purpose::Comb).uniform(0);
+        systematic(&self.weights, offset, &mut self.parents[..kept]);
+        self.parents[kept..].fill(0);
+        self.spare.gather(&self.particles, &self.parents);
+        std::mem::swap(&mut self.particles, &mut self.spare);
+        let apart = noise.point.unwrap_or_else(|| {
+            // A contact that is held to be fixed is not: it moves about as much as the robot does.
+            let slip = if self.options.motion == Motion::Curvature { 0.0 } else { SLIP * moved };
+            Adaptation::apart(self.modes.spread).max(slip)
+        });
+        for k in 0..kept {
+            let copy = k > 0 && self.parents[k] == self.parents[k - 1];
+            self.particles.spread[k] = if copy || noise.point.is_some() { apart } else { 0.0 };
+            self.particles.log_weight[k] = 0.0;
+        }
+        let random = self.stream(Purpose::Birth);
+        for k in kept..count {
+            self.births.anywhere(&self.frames, &random, &mut self.particles, k);
+        }
+        self.weights.fill(1.0 / count as f64);
+        self.rejuvenate();
+    }
+
+    fn rejuvenate(&mut self) {
+        let apart = Rejuvenation {
+            motion: self.options.motion,
+            keep_torque: self.options.likelihood == Likelihood::Gaussian,
+            stiffness_range: self.options.stiffness_range,
+            most_force: self.options.force_range[1],
+            random: self.stream(Purpose::Rejuvenation),
+        };
+        let threads = self.threads();
+        let Self { robot, frames, particles, .. } = self;
+        let work = |start: usize, mut slice: Slice<'_>| apart.apply(robot, frames, start, &mut slice);
+        parallel::for_each(particles.slice(), 0, threads, &work);
+    }
+}
+
+/// Above this share of the torque that the best particle leaves over, nothing is explained.
+const UNEXPLAINED: f64 = 0.5;
+/// Share of the robot's motion that a contact held to be fixed moves.
+const SLIP: f64 = 0.5;

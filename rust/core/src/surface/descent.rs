@@ -1,0 +1,108 @@
+//! Closest point by descent: from triangle to triangle, as long as that leads nearer.
+
+use nalgebra::Vector3;
+
+use super::mesh::Mesh;
+use super::triangle::{closest_feature, Feature};
+use super::ClosestPoint;
+
+/// Steps from triangle to triangle at most.
+const STEPS: usize = 32;
+const NONE: u32 = u32::MAX;
+
+/// Which triangles meet at edges and vertices.
+#[derive(Debug, Clone)]
+pub(super) struct Neighbours {
+    /// The other triangle at each edge (corner k to the next one); `NONE` where there is not exactly one.
+    across: Vec<[u32; 3]>,
+    /// Where in `fans` each vertex' triangles begin; one entry more than vertices.
+    first: Vec<u32>,
+    fans: Vec<u32>,
+}
+
+impl Neighbours {
+    pub fn new(vertices: usize, triangles: &[[u32; 3]]) -> Self {
+        let mut first = vec![0u32; vertices + 1];
+        triangles.iter().flatten().for_each(|&v| first[v as usize + 1] += 1);
+        (0..vertices).for_each(|v| first[v + 1] += first[v]);
+        let mut next = first.clone();
+        let mut fans = vec![0; 3 * triangles.len()];
+        for (id, triangle) in triangles.iter().enumerate() {
+            for &v in triangle {
+                fans[next[v as usize] as usize] = id as u32;
+                next[v as usize] += 1;
+            }
+        }
+        let fan = |v: u32| &fans[first[v as usize] as usize..first[v as usize + 1] as usize];
+        let across = triangles
+            .iter()
+            .enumerate()
+            .map(|(id, triangle)| {
+                [0, 1, 2].map(|k| {
+                    let other_end = triangle[(k + 1) % 3];
+                    let mut others = fan(triangle[k])
+                        .iter()
+                        .filter(|&&t| t != id as u32 && triangles[t as usize].contains(&other_end));
+                    match (others.next(), others.next()) {
+                        (Some(&other), None) => other,
+                        _ => NONE,
+                    }
+                })
+            })
+            .collect();
+        Neighbours { across, first, fans }
+    }
+
+    fn fan(&self, vertex: u32) -> &[u32] {
+        &self.fans[self.first[vertex as usize] as usize..self.first[vertex as usize + 1] as usize]
+    }
+}
+
+impl Mesh {
+    /// The point nearest to `p` among those that lie next to it, found by going downhill from triangle `start`;
+    /// `None` where that takes too long.
+    pub fn descend(&self, p: &Vector3<f64>, start: usize, first: usize) -> Option<ClosestPoint> {
+        let mut id = start;
+        let (mut point, mut feature) = self.on_triangle(p, id);
+        let mut squared = (point - p).norm_squared();
+        for _ in 0..STEPS {
+            let mut better = None;
+            let mut visit = |other: u32| {
+                let (point, feature) = self.on_triangle(p, other as usize);
+                let nearer = (point - p).norm_squared();
+                if nearer < squared {
+                    squared = nearer;
+                    better = Some((other as usize, point, feature));
+                }
+            };
+            match feature {
+                Feature::Face => {}
+                Feature::Edge(k) => match self.neighbours.across[id][usize::from(k)] {
+                    NONE => {}
+                    other => visit(other),
+                },
+                Feature::Corner(k) => {
+                    let fan = self.neighbours.fan(self.triangles[id][usize::from(k)]);
+                    fan.iter().filter(|&&other| other as usize != id).for_each(|&other| visit(other));
+                }
+            }
+            match better {
+                Some(next) => (id, point, feature) = next,
+                None => {
+                    return Some(ClosestPoint {
+                        point,
+                        normal: self.normals[id],
+                        distance: squared.sqrt(),
+                        triangle: (first + id) as i64,
+                    })
+                }
+            }
+        }
+        None
+    }
+
+    #[inline]
+    fn on_triangle(&self, p: &Vector3<f64>, id: usize) -> (Vector3<f64>, Feature) {
+        closest_feature(p, &self.triangles[id].map(|v| self.vertices[v as usize]))
+    }
+}

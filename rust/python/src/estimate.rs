@@ -1,0 +1,193 @@
+//! `ContactEstimate` and `Mode`.
+
+use std::sync::Arc;
+
+use contactsense::particle::{ContactEstimate, Mode};
+use contactsense::robot::Robot;
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::arrays::from_rows;
+
+/// A place where the contact may be.
+#[pyclass(frozen, name = "Mode", module = "contactsense._core")]
+pub struct PyMode {
+    robot: Arc<Robot>,
+    mode: Mode,
+}
+
+#[pymethods]
+impl PyMode {
+    /// The link's name.
+    #[getter]
+    fn link(&self) -> &str {
+        &self.robot.links()[self.mode.link].name
+    }
+
+    /// `(3,)`, on the link's surface, world frame [m].
+    #[getter]
+    fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.mode.point.as_slice())
+    }
+
+    /// Force on the robot, `(3,)`, world frame [N].
+    #[getter]
+    fn force<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.mode.force.as_slice())
+    }
+
+    /// Outward normal, `(3,)`, world frame.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.mode.normal.as_slice())
+    }
+
+    /// Share of the particles' weight.
+    #[getter]
+    fn probability(&self) -> f64 {
+        self.mode.probability
+    }
+
+    /// Root of the mean squared distance of the mode's particles from their mean [m].
+    #[getter]
+    fn spread(&self) -> f64 {
+        self.mode.spread
+    }
+
+    fn __repr__(&self) -> String {
+        let p = &self.mode.point;
+        let (link, probability) = (self.link(), self.mode.probability);
+        format!("Mode('{link}', point=[{:.4}, {:.4}, {:.4}], probability={probability:.3})", p.x, p.y, p.z)
+    }
+}
+
+/// The contact as a filter sees it.
+#[pyclass(frozen, name = "ContactEstimate", module = "contactsense._core")]
+pub struct PyContactEstimate {
+    pub robot: Arc<Robot>,
+    /// Those that are looked on.
+    pub links: Arc<[usize]>,
+    pub estimate: ContactEstimate,
+    pub time: f64,
+}
+
+#[pymethods]
+impl PyContactEstimate {
+    /// Whether the torques show a contact.
+    #[getter]
+    fn contact(&self) -> bool {
+        self.estimate.contact
+    }
+
+    /// "none", "started", "continued", "lost", "changed" (nothing explained the torque any more: the search began anew)
+    /// or "jumped" (the pose did: likewise).
+    #[getter]
+    fn event(&self) -> &str {
+        self.estimate.event.name()
+    }
+
+    /// The most probable link's name; empty without contact.
+    #[getter]
+    fn link(&self) -> &str {
+        self.estimate.link.map_or("", |link| &self.robot.links()[link].name)
+    }
+
+    /// The most probable place on that link, `(3,)`, world frame [m]; NaN without contact.
+    #[getter]
+    fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.estimate.point.as_slice())
+    }
+
+    /// Force on the robot, `(3,)`, world frame [N]; NaN without contact.
+    #[getter]
+    fn force<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.estimate.force.as_slice())
+    }
+
+    /// Outward normal of the contact, `(3,)`, world frame; NaN without contact.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.estimate.normal.as_slice())
+    }
+
+    /// Of the force [N].
+    #[getter]
+    fn magnitude(&self) -> f64 {
+        self.estimate.force.norm()
+    }
+
+    /// Of the contact [N/m]; `None` without contact, and where the motion model has none.
+    #[getter]
+    fn stiffness(&self) -> Option<f64> {
+        self.estimate.stiffness
+    }
+
+    /// Of the point, `(3, 3)`, world frame [m^2]: second moment of all particles about `point`, other modes included.
+    #[getter]
+    fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let c = &self.estimate.covariance;
+        from_rows(py, (0..3).map(|i| [c[(i, 0)], c[(i, 1)], c[(i, 2)]]))
+    }
+
+    /// Share of the particles' weight on each link that is looked on.
+    #[getter]
+    fn link_probabilities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for (&link, probability) in self.links.iter().zip(&self.estimate.link_probabilities) {
+            dict.set_item(&self.robot.links()[link].name, probability)?;
+        }
+        Ok(dict)
+    }
+
+    /// Clusters of particles, best first; at most eight.
+    #[getter]
+    fn modes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let wrap = |mode: &Mode| Bound::new(py, PyMode { robot: self.robot.clone(), mode: *mode });
+        let modes: Vec<_> = self.estimate.modes.iter().map(wrap).collect::<PyResult<_>>()?;
+        PyTuple::new(py, modes)
+    }
+
+    /// The data do not say which link, or where on it.
+    #[getter]
+    fn ambiguous(&self) -> bool {
+        self.estimate.ambiguous
+    }
+
+    /// Whether the particles explain the measured torque.
+    #[getter]
+    fn explained(&self) -> bool {
+        self.estimate.explained
+    }
+
+    /// Norm of the torque that the particles leave over, root of the weighted mean square [Nm].
+    #[getter]
+    fn residual(&self) -> f64 {
+        self.estimate.residual
+    }
+
+    /// Effective number of particles, before resampling.
+    #[getter]
+    fn effective_samples(&self) -> f64 {
+        self.estimate.effective_samples
+    }
+
+    /// As given to `update`; otherwise the number of updates since the start.
+    #[getter]
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn __repr__(&self) -> String {
+        if !self.estimate.contact {
+            return format!("ContactEstimate(no contact, event='{}')", self.event());
+        }
+        let (p, force) = (&self.estimate.point, self.magnitude());
+        let ambiguous = if self.estimate.ambiguous { ", ambiguous" } else { "" };
+        let link = self.link();
+        format!(
+            "ContactEstimate('{link}', point=[{:.4}, {:.4}, {:.4}], magnitude={force:.2} N{ambiguous})",
+            p.x, p.y, p.z
+        )
+    }
+}

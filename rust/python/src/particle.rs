@@ -1,0 +1,237 @@
+//! `ContactParticleFilter` and its `Particles`.
+
+use std::sync::Arc;
+
+use contactsense::particle::{ContactParticleFilter, FilterOptions, Likelihood, Motion, Schedule};
+use contactsense::robot::Robot;
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{from_rows, whole, Number, Vector};
+use crate::errors::{input, to_python};
+use crate::estimate::PyContactEstimate;
+use crate::observer::scalar_or_vector;
+use crate::robot::PyRobot;
+use crate::sensor::names;
+
+/// A copy of the particles, one row each.
+#[pyclass(frozen, get_all, module = "contactsense._core")]
+pub struct Particles {
+    /// `(n,)`, index into `robot.link_names`.
+    link: Py<PyArray1<i64>>,
+    /// `(n, 3)`, world frame [m].
+    point: Py<PyArray2<f64>>,
+    /// `(n, 3)`, outward, world frame.
+    normal: Py<PyArray2<f64>>,
+    /// `(n,)`, along the inward normal [N].
+    force: Py<PyArray1<f64>>,
+    /// `(n,)` [N/m].
+    stiffness: Py<PyArray1<f64>>,
+    /// `(n,)`, sums to one.
+    weight: Py<PyArray1<f64>>,
+}
+
+/// Finds one contact anywhere on a robot from joint torques, by particles on its surface (Bimbo 2019).
+///
+/// Each particle is a hypothesis of link, point, obstacle, force and stiffness; those that predict the torques while the
+/// robot makes small motions in contact survive. Frictionless, one contact, a convex obstacle that stays where it is.
+///
+/// `particles`: how many, default 10,000. `motion`: "curvature" (eq. 8), or the baselines "fixed_on_link" and
+/// "fixed_in_world". `measurement`: "normal" (frictionless). `links`: names of those to look on, by default all that
+/// move and have a surface. `seed`: same seed, same answer, for any number of `threads` (default 1). `force_range` [N],
+/// `stiffness_range` [N/m] and `radius_range` [m] of the obstacle's curvature: least and greatest at the start, default
+/// (1, 100), (3e2, 3e4), (5e-3, 1).
+///
+/// `likelihood`: "gaussian" (default; force and stiffness are integrated out) or "exponential" (eq. 5, both are drawn at
+/// random). `torque_noise`: standard deviation at rest, scalar or `(nv,)` [Nm], default 0.02; `relative_noise`: relative
+/// to the torque, default 0.03. Greater noise is learnt from what is left over. `torque_threshold`: below it on every
+/// joint there is no contact, scalar or `(nv,)` [Nm], default 0.06.
+///
+/// `schedule`: None (by what the data show), "paper", or a dict of some of "sharpness" (alpha, [1/Nm]), "point_noise" [m],
+/// "force_noise" and "stiffness_noise" (relative), each a number or a pair (first, last), and "updates", after which the
+/// last is reached. Raises `InputError` that names the argument.
+#[pyclass(name = "ContactParticleFilter", module = "contactsense._core")]
+pub struct PyContactParticleFilter {
+    filter: ContactParticleFilter,
+    robot: Arc<Robot>,
+}
+
+#[pymethods]
+impl PyContactParticleFilter {
+    #[new]
+    #[pyo3(signature = (robot, *, particles=None, motion="curvature", measurement="normal", links=None, seed=None,
+        force_range=None, stiffness_range=None, radius_range=None, schedule=None, threads=None,
+        likelihood="gaussian", torque_noise=None, relative_noise=None, torque_threshold=None))]
+    #[allow(clippy::too_many_arguments)] // named in Python
+    fn new(
+        robot: &Bound<'_, PyRobot>,
+        particles: Option<&Bound<'_, PyAny>>,
+        motion: &str,
+        measurement: &str,
+        links: Option<&Bound<'_, PyAny>>,
+        seed: Option<&Bound<'_, PyAny>>,
+        force_range: Option<&Bound<'_, PyAny>>,
+        stiffness_range: Option<&Bound<'_, PyAny>>,
+        radius_range: Option<&Bound<'_, PyAny>>,
+        schedule: Option<&Bound<'_, PyAny>>,
+        threads: Option<&Bound<'_, PyAny>>,
+        likelihood: &str,
+        torque_noise: Option<&Bound<'_, PyAny>>,
+        relative_noise: Option<Number>,
+        torque_threshold: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let py = robot.py();
+        let mut options = FilterOptions {
+            motion: match motion {
+                "curvature" => Motion::Curvature,
+                "fixed_on_link" => Motion::FixedOnLink,
+                "fixed_in_world" => Motion::FixedInWorld,
+                _ => {
+                    return Err(unknown(
+                        py,
+                        "motion",
+                        motion,
+                        "'curvature', 'fixed_on_link', 'fixed_in_world'",
+                    ))
+                }
+            },
+            likelihood: match likelihood {
+                "gaussian" => Likelihood::Gaussian,
+                "exponential" => Likelihood::Exponential,
+                _ => return Err(unknown(py, "likelihood", likelihood, "'gaussian', 'exponential'")),
+            },
+            links: links.map(|links| names("links", "links", links)).transpose()?,
+            ..FilterOptions::default()
+        };
+        if measurement != "normal" {
+            return Err(unknown(py, "measurement", measurement, "'normal'"));
+        }
+        if let Some(particles) = particles {
+            options.particles = whole("particles", particles, 10_000_000)? as usize;
+        }
+        if let Some(seed) = seed {
+            options.seed = whole("seed", seed, u64::MAX)?;
+        }
+        if let Some(threads) = threads {
+            options.threads = whole("threads", threads, 256)? as usize;
+        }
+        for (name, object, range) in [
+            ("force_range", force_range, &mut options.force_range),
+            ("stiffness_range", stiffness_range, &mut options.stiffness_range),
+            ("radius_range", radius_range, &mut options.radius_range),
+        ] {
+            if let Some(object) = object {
+                *range = Vector::new(name, object)?.fixed::<2>(py, name)?;
+            }
+        }
+        if let Some(noise) = torque_noise {
+            options.torque_noise = scalar_or_vector("torque_noise", noise)?;
+        }
+        if let Some(noise) = relative_noise {
+            options.relative_noise = noise.0;
+        }
+        if let Some(threshold) = torque_threshold {
+            options.torque_threshold = scalar_or_vector("torque_threshold", threshold)?;
+        }
+        options.schedule = read_schedule(py, schedule)?;
+        let robot = robot.get().0.clone();
+        let filter =
+            ContactParticleFilter::new(robot.clone(), options).map_err(|error| to_python(py, error))?;
+        Ok(Self { filter, robot })
+    }
+
+    /// Takes in a configuration `q` `(nq,)` and the external torque `tau_ext` `(nv,)` measured there [Nm; N for sliding
+    /// joints and a base's linear part]; returns what the particles say.
+    ///
+    /// `tau_ext` is what `MomentumObserver` gives, or `g(q) - tau` where the robot holds still. The first call that feels a
+    /// contact spreads the particles over the surface. `time` [s] is handed on to the estimate. Other Python threads run
+    /// meanwhile. Raises `InputError` that names the argument; the filter is then unchanged.
+    #[pyo3(signature = (q, tau_ext, *, time=None))]
+    fn update(
+        &mut self,
+        q: &Bound<'_, PyAny>,
+        tau_ext: &Bound<'_, PyAny>,
+        time: Option<Number>,
+    ) -> PyResult<PyContactEstimate> {
+        let py = q.py();
+        let q = Vector::new("q", q)?.slice().to_vec();
+        let tau_ext = Vector::new("tau_ext", tau_ext)?.slice().to_vec();
+        let filter = &mut self.filter;
+        let estimate = py.detach(|| filter.update(&q, &tau_ext).cloned());
+        let estimate = estimate.map_err(|error| to_python(py, error))?;
+        let time = time.map_or(estimate.updates as f64, |time| time.0);
+        Ok(PyContactEstimate { links: self.filter.links().into(), robot: self.robot.clone(), estimate, time })
+    }
+
+    /// Forgets all updates.
+    fn reset(&mut self) {
+        self.filter.reset();
+    }
+
+    /// The particles after the last update; a copy.
+    #[getter]
+    fn particles(&self, py: Python<'_>) -> PyResult<Particles> {
+        let columns = self.filter.particles();
+        let touchable = self.robot.touchable_links();
+        let number = |link: u32| touchable.iter().position(|&l| l == link as usize).map_or(-1, |k| k as i64);
+        let count = columns.len();
+        let points = (0..count).map(|k| self.filter.point(k).into());
+        let normals = (0..count).map(|k| self.filter.normal(k).into());
+        Ok(Particles {
+            link: PyArray1::from_iter(py, columns.link.iter().map(|&link| number(link))).unbind(),
+            point: from_rows::<3>(py, points)?.unbind(),
+            normal: from_rows::<3>(py, normals)?.unbind(),
+            force: PyArray1::from_iter(py, columns.force.iter().map(|force| force.max(0.0))).unbind(),
+            stiffness: PyArray1::from_slice(py, &columns.stiffness).unbind(),
+            weight: PyArray1::from_slice(py, self.filter.weights()).unbind(),
+        })
+    }
+}
+
+fn unknown(py: Python<'_>, name: &str, given: &str, choices: &str) -> PyErr {
+    input(py, format!("{name}: there is no '{given}'; there are {choices}"))
+}
+
+/// `None`, "paper", or a mapping of pairs.
+fn read_schedule(py: Python<'_>, object: Option<&Bound<'_, PyAny>>) -> PyResult<Schedule> {
+    let Some(object) = object else { return Ok(Schedule::Adaptive) };
+    if let Ok(name) = object.extract::<String>() {
+        return match name.as_str() {
+            "adaptive" => Ok(Schedule::Adaptive),
+            "paper" => Ok(Schedule::paper()),
+            _ => Err(unknown(py, "schedule", &name, "'adaptive', 'paper', or a dict")),
+        };
+    }
+    let Ok(given) = object.cast::<PyDict>() else {
+        return Err(input(py, "schedule: expected None, 'adaptive', 'paper' or a dict".into()));
+    };
+    let mut schedule = Schedule::paper();
+    let Schedule::Explicit { sharpness, point_noise, force_noise, stiffness_noise, updates } = &mut schedule
+    else {
+        return Ok(schedule);
+    };
+    for (key, value) in given {
+        let key: String = key.extract()?;
+        let pair = match key.as_str() {
+            "sharpness" => &mut *sharpness,
+            "point_noise" => &mut *point_noise,
+            "force_noise" => &mut *force_noise,
+            "stiffness_noise" => &mut *stiffness_noise,
+            "updates" => {
+                *updates = whole("schedule: updates", &value, 1_000_000_000)? as usize;
+                continue;
+            }
+            _ => {
+                let choices = "'sharpness', 'point_noise', 'force_noise', 'stiffness_noise', 'updates'";
+                return Err(unknown(py, "schedule", &key, choices));
+            }
+        };
+        let name = format!("schedule: {key}");
+        *pair = match value.extract::<f64>() {
+            Ok(both) => [both, both],
+            Err(_) => Vector::new(&name, &value)?.fixed::<2>(py, &name)?,
+        };
+    }
+    Ok(schedule)
+}
