@@ -19,6 +19,7 @@ LONGEST = {"examples": 60, "docs": 120}
 
 # What each example must have found out, as a pattern of its output.
 FINDINGS = {
+    "explore_a_touch.py": r"_4, 1\d\.\d N\nphysics: 201 samples(.|\n)* 0\.[0-3]\d Nm(.|\n)*within \d mm",
     "own_robot.py": r"warning: .*'elbow'(.|\n)*warning: .*'lower'(.|\n)*refused: link 'upper'",
     "surface_queries.py": r"watertight: True(.|\n)*ray 0: in .*\nray 0: out .*\n1000 samples",
     "touch_in_simulation.py": r"felt [1-9] ms (.|\n)*iiwa_link_7, located: True\npoint error: [0-4]\.",
@@ -41,7 +42,7 @@ def test_every_example_has_findings() -> None:
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.name)
 def test_example_runs(path: Path, tmp_path: Path) -> None:
-    if path.name == "touch_in_simulation.py":
+    if path.name in ("explore_a_touch.py", "touch_in_simulation.py"):
         pytest.importorskip("mujoco")
     printed = run(str(path), folder=tmp_path)
     assert re.search(FINDINGS[path.name], printed), printed
@@ -60,7 +61,7 @@ def test_readme_snippet_finds_the_touch(tmp_path: Path) -> None:
     ids=lambda page: page.stem,
 )
 def test_page_snippets_run(page: Path, tmp_path: Path) -> None:
-    if page.stem == "simulation":
+    if page.stem in ("simulation", "touching"):
         pytest.importorskip("mujoco")
     run("-c", "\n".join(SNIPPET.findall(page.read_text(encoding="utf-8"))), folder=tmp_path)
 

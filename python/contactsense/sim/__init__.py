@@ -13,9 +13,10 @@ from .impedance import HandImpedanceController, ImpedanceController
 from .measurement import Measurement
 from .mjcf import mjcf_string, mjcf_tree
 from .models import model_from_urdf, named_geoms, named_model
+from .mujoco_contact import ConvexPart, MujocoContact, hull_parts
 from .noise import TorqueNoise, WrenchNoise
 from .obstacles import CubeObstacle, CylinderObstacle, Obstacle, SphereObstacle, obstacle_from_dict
-from .penalty import ContactForce, PenaltyContact
+from .penalty import ContactForce, PenaltyContact, joint_torque
 from .push import Push, random_push
 from .quasi_static import record_quasi_static
 from .record import record_run
@@ -32,6 +33,7 @@ __all__ = [
     "ContactPath",
     "ContactQuery",
     "ContactRun",
+    "ConvexPart",
     "Coordinates",
     "CubeObstacle",
     "CylinderObstacle",
@@ -41,6 +43,7 @@ __all__ = [
     "HandImpedanceController",
     "ImpedanceController",
     "Measurement",
+    "MujocoContact",
     "Obstacle",
     "Pace",
     "PathPoint",
@@ -58,7 +61,9 @@ __all__ = [
     "TrajectoryPoint",
     "WrenchNoise",
     "geoms_of",
+    "hull_parts",
     "joint_exploration",
+    "joint_torque",
     "mjcf_string",
     "mjcf_tree",
     "model_from_urdf",

@@ -97,7 +97,7 @@ class _Walk:
         for k in range(1, len(self._ease)):
             moved = q + (self._ease[k] - self._ease[k - 1]) * (end - start)
             corrected = self._correct(moved, depth + self._ease[k] * (goal - depth))
-            if corrected is None or not self._alone(corrected):
+            if corrected is None or not self._only(corrected):
                 return None
             q = corrected
             if k % self._every == 0:
@@ -111,9 +111,12 @@ class _Walk:
         torque: FloatArray = -self._scene.stiffness * contact.penetration * (jacobian.T @ contact.normal)
         return torque
 
-    def _alone(self, q: FloatArray) -> bool:
+    def _only(self, q: FloatArray) -> bool:
+        """Whether the link touches at one point, and no other link touches."""
         others = (link for link in self._query.links if link != self._scene.link)
-        return all(self._query.near(q, link, 0.0) is None for link in others)
+        if any(self._query.near(q, link, 0.0) is not None for link in others):
+            return False
+        return self._query.single(q, self._query.at(q, self._scene.link))
 
     def _correct(self, q: FloatArray, depth: float) -> FloatArray | None:
         """`q` changed by as little as brings the link to `depth`; None where that is not found."""

@@ -21,7 +21,11 @@ from .nearest_pair import ObstacleCore, link_body
 from .obstacles import Obstacle, SphereObstacle
 
 # Rounds of projection, and the step at which they end [m].
-_ROUNDS, _STILL = 50, 1e-9
+_ROUNDS, _STILL = 50, 1e-8
+# Triangles that stand for primitives may be off by this [m].
+_TESSELLATION = 1e-3
+# A link may rise above the tangent plane by this share of the penetration, or this [m].
+_RISE, _LEAST_RISE = 0.1, 1e-4
 # Below this cosine between the triangle's normal and the way to the query, the side is checked with a ray.
 _CLEAR = 0.2
 
@@ -32,7 +36,7 @@ class DeepestPoint:
 
     link: str
     point: FloatArray  # (3,) on the link's surface [m]
-    normal: FloatArray  # (3,) unit, from the link towards the obstacle
+    normal: FloatArray  # (3,) unit, from the link towards the obstacle; zero where its core is reached
     penetration: float  # [m], negative: the gap
 
 
@@ -73,21 +77,39 @@ class ContactQuery:
         middle = pose[:3, :3] @ center + pose[:3, 3]
         if float(self.obstacle.signed_distance(middle[None])[0]) > radius + margin:
             return None
-        contact = self._deepest(pose, link)
-        return contact if contact.penetration > -margin else None
+        contact = self._deepest(pose, link, margin)
+        return contact if contact is not None and contact.penetration > -margin else None
 
     def at(self, q: FloatArray, link: str) -> DeepestPoint:
         """The deepest point of `link`, whether it touches or not."""
-        return self._deepest(self.robot.link_pose(q, link), link)
+        contact = self._deepest(self.robot.link_pose(q, link), link, np.inf)
+        assert contact is not None
+        return contact
 
-    def _deepest(self, pose: FloatArray, link: str) -> DeepestPoint:
+    def single(self, q: FloatArray, contact: DeepestPoint) -> bool:
+        """Whether all of the link that is in the obstacle lies under the tangent plane at the deepest point.
+
+        If not, the obstacle is in a fold of the link: it would touch at several points, and the deepest one
+        jumps between them.
+        """
+        pose = self.robot.link_pose(q, contact.link)
+        samples = link_body(self.robot, contact.link, self._surfaces[contact.link]).samples
+        points = samples @ pose[:3, :3].T + pose[:3, 3]
+        within = points[self.obstacle.signed_distance(points) < 0.0]
+        rise = (within - contact.point) @ contact.normal
+        return not (rise > _RISE * contact.penetration + _LEAST_RISE).any()
+
+    def _deepest(self, pose: FloatArray, link: str, margin: float) -> DeepestPoint | None:
         surface = self._surfaces[link]
         rotation, origin = pose[:3, :3], pose[:3, 3]
         if self._shape is None:
             return _at_center(surface, link, rotation, origin, self.obstacle)
         body = link_body(self.robot, link, surface)
         on_link, on_core = self._shape.nearest(body, rotation, origin)
-        if body.exact:
+        gap = float(np.linalg.norm(on_core - on_link))
+        if gap > self.obstacle.rounding + margin + _TESSELLATION:
+            return None
+        if body.exact and gap > 0.0:
             on_link, on_core = self._polish(surface, rotation, origin, on_core)
         arm = on_core - on_link
         distance = float(np.linalg.norm(arm))

@@ -130,9 +130,9 @@ class HandImpedanceController:
         by_mass = np.linalg.solve(mass, jacobian.T)
         # The small term keeps a singular arm, whose hand cannot move some way, from blowing up.
         inertia = np.linalg.inv(jacobian @ by_mass + 1e-4 * np.eye(6))
-        ratio = 2.0 * self.damping_ratio
-        hand_damping = ratio * np.sqrt(self._hand_stiffness * np.diagonal(inertia))
-        wrench = self._hand_stiffness * error - hand_damping * (jacobian @ slip)
+        inertia = 0.5 * (inertia + inertia.T)
+        spring, damper = _gains_at(inertia, self._hand_stiffness, self.damping_ratio, self.bandwidth)
+        wrench = spring @ error - damper @ (jacobian @ slip)
         stiffness, damping = _gains_at(mass, self.stiffness, self.damping_ratio, self.bandwidth)
         free = stiffness @ (desired - q) - damping @ slip
         free -= jacobian.T @ (inertia @ (by_mass.T @ free))
@@ -143,7 +143,7 @@ class HandImpedanceController:
 def _gains_at(
     mass: FloatArray, stiffness: FloatArray, ratio: float, bandwidth: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Stiffness and damping (nv, nv): every mode with the damping ratio, none above the bandwidth."""
+    """Stiffness and damping, each (n, n): every mode with the damping ratio, none above `bandwidth`."""
     root = np.linalg.cholesky(mass)
     inverse = np.linalg.inv(root)
     squares, modes = np.linalg.eigh((inverse * stiffness) @ inverse.T)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -50,7 +51,6 @@ class MujocoContact:
     """What `PenaltyContact` is, left to MuJoCo: the obstacle is part of the simulated world.
 
     Args:
-        model: Pinocchio model, names the links.
         obstacle: stands still.
         parts: convex pieces of links, or primitives named `link:number` as by `geoms_of`; where several
             touch, each is a spring, and the forces add up.
@@ -64,7 +64,6 @@ class MujocoContact:
 
     def __init__(
         self,
-        model: pin.Model,
         obstacle: Obstacle,
         parts: Iterable[ConvexPart | Geom],
         *,
@@ -72,18 +71,22 @@ class MujocoContact:
         damping: float = 0.0,
         friction: float = 0.0,
     ) -> None:
-        self.model, self.obstacle = model, obstacle
+        self.obstacle = obstacle
         self.parts = tuple(parts)
         self.stiffness = positive("stiffness", stiffness)
         self.damping = not_negative("damping", damping)
         self.friction = not_negative("friction", friction)
+
+    def arm(self, model: pin.Model, *, dt: float = 0.001, noise: TorqueNoise | None = None) -> SimulatedRobot:
+        """The robot in a world with the obstacle in it.
+
+        Raises:
+            InputError: a part is on a link that `model` has not.
+        """
         for part in self.parts:
             if not model.existFrame(_link(part), pin.FrameType.BODY):
                 raise InputError(f"parts: the model has no link '{_link(part)}'")
-
-    def arm(self, *, dt: float = 0.001, noise: TorqueNoise | None = None) -> SimulatedRobot:
-        """The robot in a world with the obstacle in it."""
-        root = mjcf_tree(self.model, dt=dt)
+        root = mjcf_tree(model, dt=dt)
         option = root.find("option")
         assert option is not None
         # One contact for each pair: several springs side by side would be a stiffer one.
@@ -91,18 +94,31 @@ class MujocoContact:
         bodies = {body.get("name"): body for body in root.iter("body")}
         assets = ET.SubElement(root, "asset")
         for number, part in enumerate(self.parts):
-            joint = _joint(self.model, part)
+            joint = _joint(model, part)
             if joint == 0:
                 continue  # fixed to the world, as the obstacle is
-            _write(part, number, self.model, bodies[self.model.names[joint]], assets, self._condim)
+            _write(part, number, model, bodies[model.names[joint]], assets, self._condim)
         world = root.find("worldbody")
         assert world is not None
         _write_obstacle(world, self.obstacle)
-        arm = SimulatedRobot(self.model, dt=dt, mjcf=ET.tostring(root, encoding="unicode"), noise=noise)
+        arm = SimulatedRobot(model, dt=dt, mjcf=ET.tostring(root, encoding="unicode"), noise=noise)
         self._soften(arm)
         return arm
 
-    def forces(self, arm: SimulatedRobot) -> tuple[ContactForce, ...]:
+    def apply(self, arm: SimulatedRobot) -> None:
+        """Nothing: MuJoCo does it by itself."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain values of its settings."""
+        return {
+            "contact": "MuJoCo",
+            "obstacle": self.obstacle.to_dict(),
+            "stiffness": self.stiffness,
+            "friction": self.friction,
+            "damping": self.damping,
+        }
+
+    def present(self, arm: SimulatedRobot) -> tuple[ContactForce, ...]:
         """What the obstacle does to each link it touches, now, the hardest first.
 
         Of several contacts of a link the force is the sum, point and normal are means weighted by force.

@@ -13,6 +13,8 @@ from contactsense import Robot, Surface
 from ._arrays import FloatArray
 from .obstacles import CubeObstacle, CylinderObstacle
 
+# Points of a link to look at one by one.
+_SAMPLES = 4000
 # Relative accuracy of coal's distances.
 _TOLERANCE = 1e-9
 
@@ -33,6 +35,7 @@ class LinkBody:
         self.model.endModel()
         # Exact primitives answer without a triangle.
         self.exact = bool((surface.closest_points(vertices[:1]).triangles < 0).all())
+        self.samples = surface.sample(_SAMPLES).points
         center = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
         # Primitives bulge a little beyond their tessellation.
         self.ball = center, 1.02 * float(np.linalg.norm(vertices - center, axis=1).max()) + 1e-3

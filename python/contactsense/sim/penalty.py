@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+import pinocchio as pin
 
 from contactsense import Robot
 from contactsense.errors import InputError
@@ -12,7 +15,11 @@ from contactsense.errors import InputError
 from ._arrays import FloatArray, not_negative, positive
 from .arm import SimulatedRobot
 from .deepest import ContactQuery, DeepestPoint
+from .noise import TorqueNoise
 from .obstacles import Obstacle
+
+# Time in which friction must not reverse the slip [s].
+_TICK = 1e-3
 
 
 @dataclass(frozen=True)
@@ -40,7 +47,8 @@ class PenaltyContact:
         stiffness: [N/m].
         friction: coefficient; 0 = frictionless.
         dissipation: [s/m].
-        slip_speed: [m/s].
+        slip_speed: at least [m/s]. Where friction within 1 ms could turn the slip of the light link round, as
+            explicit integration would make it do for ever, it is raised to that speed.
         links: that can touch; by default all that have a surface and move.
 
     Raises:
@@ -83,16 +91,34 @@ class PenaltyContact:
             arm.apply_force(contact.link, contact.point, contact.force)
         return forces
 
-    def torque(self, q: FloatArray, forces: tuple[ContactForce, ...]) -> FloatArray:
-        """(nv,) external joint torque of `forces` at `q`: the sum of `J^T F`."""
-        total = np.zeros(self.robot.nv)
-        for contact in forces:
-            total += self.robot.jacobian(q, contact.link, contact.point)[:3].T @ contact.force
-        return total
+    def arm(self, model: pin.Model, *, dt: float = 0.001, noise: TorqueNoise | None = None) -> SimulatedRobot:
+        """A simulated robot to `apply` the forces to."""
+        return SimulatedRobot(model, dt=dt, noise=noise)
+
+    def present(self, arm: SimulatedRobot) -> tuple[ContactForce, ...]:
+        """The forces on `arm` as it is now."""
+        return self.forces(arm.q, arm.v)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain values of its settings."""
+        return {
+            "contact": "penalty",
+            "obstacle": self.obstacle.to_dict(),
+            "stiffness": self.stiffness,
+            "friction": self.friction,
+            "dissipation": self.dissipation,
+            "slip_speed": self.slip_speed,
+        }
+
+    def _mobility(self, q: FloatArray, contact: DeepestPoint) -> float:
+        """The most that a force of 1 N across the normal accelerates the touched point [1/kg]."""
+        jacobian = self.robot.jacobian(q, contact.link, contact.point)[:3]
+        across = jacobian - np.outer(contact.normal, contact.normal @ jacobian)
+        return float(np.linalg.norm(across @ np.linalg.solve(self.robot.mass_matrix(q), across.T), 2))
 
     def _force(self, q: FloatArray, v: FloatArray, contact: DeepestPoint) -> ContactForce:
         depth = contact.penetration
-        if self.obstacle.rounding - abs(depth) < 1e-9 and depth > 0:
+        if not contact.normal.any():
             raise InputError(
                 f"stiffness: '{contact.link}' is {depth:.4g} m deep, as deep as the obstacle's rounding;"
                 " the contact must be stiffer, or the obstacle rounder"
@@ -103,5 +129,14 @@ class PenaltyContact:
         force = -size * contact.normal
         if self.friction > 0.0:
             slip = velocity - inward * contact.normal
-            force -= self.friction * size * slip / np.hypot(np.linalg.norm(slip), self.slip_speed)
+            speed = max(self.slip_speed, self.friction * size * self._mobility(q, contact) * _TICK)
+            force -= self.friction * size * slip / np.hypot(np.linalg.norm(slip), speed)
         return ContactForce(contact.link, contact.point, contact.normal, depth, force)
+
+
+def joint_torque(robot: Robot, q: FloatArray, forces: Iterable[ContactForce]) -> FloatArray:
+    """(nv,) external joint torque of `forces` at `q`: the sum of `J^T F` [Nm]."""
+    total = np.zeros(robot.nv)
+    for contact in forces:
+        total += robot.jacobian(q, contact.link, contact.point)[:3].T @ contact.force
+    return total

@@ -13,7 +13,7 @@ from contactsense.errors import InputError
 
 from ._arrays import FloatArray
 from .disturbance import TorqueError
-from .penalty import ContactForce, PenaltyContact
+from .penalty import ContactForce, PenaltyContact, joint_torque
 from .run import ContactRun
 
 
@@ -55,12 +55,17 @@ def record_quasi_static(
     v[1:] = np.diff(poses, axis=0) / np.diff(times)[:, None]
     still = np.zeros(robot.nv)
     forces = [contact.forces(pose, speed) for pose, speed in zip(poses, v, strict=True)]
-    true = np.array([contact.torque(pose, each) for pose, each in zip(poses, forces, strict=True)])
+    true = np.array([joint_torque(robot, pose, each) for pose, each in zip(poses, forces, strict=True)])
     known = np.array([robot.inverse_dynamics(pose, still, still) for pose in poses])
     gravity = known if true_model is None else gravity_torques(true_model, poses)
     disturbed = true if error is None else error.measure(true)
     tau = gravity - disturbed
-    plain = settings_of(contact, error) | {"recorder": "quasi-static"} | (settings or {})
+    plain = contact.to_dict() | {
+        "recorder": "quasi-static",
+        "robot": robot.name,
+        "error": (error or TorqueError()).to_dict(),
+    }
+    plain |= settings or {}
     return contact_run(times, poses, v, tau, known - tau, true, forces, plain)
 
 
@@ -68,18 +73,6 @@ def gravity_torques(model: pin.Model, q: FloatArray) -> FloatArray:
     """(T, nv) torques that hold `model` at rest in poses `q` (T, nq)."""
     data = model.createData()
     return np.array([pin.computeGeneralizedGravity(model, data, pose) for pose in q])
-
-
-def settings_of(contact: PenaltyContact, error: TorqueError | None) -> dict[str, Any]:
-    """Plain values of what made a record."""
-    return {
-        "robot": contact.robot.name,
-        "obstacle": contact.obstacle.to_dict(),
-        "stiffness": contact.stiffness,
-        "friction": contact.friction,
-        "dissipation": contact.dissipation,
-        "error": (error or TorqueError()).to_dict(),
-    }
 
 
 def contact_run(

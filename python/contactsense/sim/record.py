@@ -11,13 +11,13 @@ from contactsense import MomentumObserver, Robot
 from contactsense.errors import InputError
 
 from ._arrays import FloatArray, not_negative, positive
-from .arm import SimulatedRobot
 from .contact_path import ContactPath
 from .disturbance import TorqueError
 from .impedance import ImpedanceController
+from .mujoco_contact import MujocoContact
 from .noise import TorqueNoise
-from .penalty import ContactForce, PenaltyContact
-from .quasi_static import contact_run, settings_of
+from .penalty import ContactForce, PenaltyContact, joint_torque
+from .quasi_static import contact_run
 from .run import ContactRun
 
 
@@ -37,7 +37,7 @@ class SoftController(Protocol):
 def record_run(
     robot: Robot,
     model: pin.Model,
-    contact: PenaltyContact,
+    contact: PenaltyContact | MujocoContact,
     path: ContactPath,
     *,
     controller: SoftController | None = None,
@@ -54,13 +54,12 @@ def record_run(
     """Simulate an arm that follows `path` softly, pressing on the obstacle; record at `rate`.
 
     It starts at rest at the path's first pose. The controller is fed the path's poses, and the torques with
-    which the contact is planned to push back: a soft arm alone would stop short of the obstacle. Forces are
-    those of `contact`, at the deepest point of the true surface, new in every tick.
+    which the contact is planned to push back: a soft arm alone would stop short of the obstacle.
 
     Args:
         robot: what is known of the arm: the observer uses it.
         model: the same for the controller.
-        contact: spring between the true surface and the obstacle.
+        contact: `PenaltyContact`, at the deepest point of the true surface, or `MujocoContact`.
         path: see `joint_exploration` and its like.
         controller: `ImpedanceController(model)` by default.
         true_model: the arm as it is (see `perturbed_model`), which is simulated; `model` by default.
@@ -75,7 +74,7 @@ def record_run(
         settings: added to those of the record.
 
     Raises:
-        InputError: names the argument; also if the obstacle's core is reached.
+        InputError: names the argument; also if the obstacle's core is reached, or the arm becomes unstable.
     """
     ticks = round(1.0 / (positive("rate", rate) * positive("dt", dt)))
     if ticks < 1 or abs(ticks * dt * rate - 1.0) > 1e-6:
@@ -87,7 +86,7 @@ def record_run(
     if (model.nq, model.nv) != (robot.nq, robot.nv):
         raise InputError(f"model: has {model.nq} coordinates, the robot {robot.nq}")
     control = controller or ImpedanceController(model)
-    arm = SimulatedRobot(true_model or model, dt=dt, noise=sensor_noise)
+    arm = contact.arm(true_model or model, dt=dt, noise=sensor_noise)
     observer = MomentumObserver(robot, dt=dt, gain=observer_gain)
     arm.reset(path.q[0])
     still = np.zeros(robot.nv)
@@ -98,18 +97,24 @@ def record_run(
         goal = path.at(tick * dt)
         arm.clear_forces()
         contact.apply(arm)
+        sampled = tick >= 0 and tick % ticks == 0
+        if sampled:
+            forces.append(contact.present(arm))
         measured = arm.step(control.torque(q, v, goal.q, goal.v, -goal.external_torque))
         felt = observer.update(q, v, measured.tau_mean)
-        if tick >= 0 and tick % ticks == 0:
+        if sampled:
             if external_torque == "static":
                 felt = robot.inverse_dynamics(q, still, still) - measured.tau_mean
-            forces.append(contact.forces(q, v))
-            true = contact.torque(q, forces[-1])
+            true = joint_torque(robot, q, forces[-1])
             rows.append((np.array([tick * dt]), q, v, measured.tau_mean, felt, true))
+    if any(int(warning.number) for warning in arm.mj_data.warning):
+        raise InputError("controller: the simulated arm has become unstable; softer control may hold it")
     time, q, v, tau, felt, true = (np.array(column) for column in zip(*rows, strict=True))
     offset = np.zeros_like(true) if error is None else error.measure(true) - true
-    plain = settings_of(contact, error) | {
+    plain = contact.to_dict() | {
         "recorder": "physics",
+        "robot": robot.name,
+        "error": (error or TorqueError()).to_dict(),
         "external_torque": external_torque,
         "observer_gain": observer_gain,
         "rate": rate,

@@ -86,9 +86,9 @@ class ContactRun:
         """
         name = os.fspath(path)
         try:
-            with np.load(path, allow_pickle=False) as archive:
+            with open(path, "rb") as file, np.lib.npyio.NpzFile(file, allow_pickle=False) as archive:
                 arrays = {key: archive[key] for key in archive.files}
-        except (OSError, ValueError, EOFError, KeyError, AttributeError, zipfile.BadZipFile) as cause:
+        except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile) as cause:
             raise InputError(f"path: '{name}' cannot be read as a recorded run: {cause}") from cause
         missing = {*_NUMBERS, "format", "settings", "link"} - set(arrays)
         if missing:

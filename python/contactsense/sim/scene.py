@@ -68,7 +68,8 @@ def touch_scene(
 
     A point whose force turns no joint cannot be felt by joint torques, whoever looks: such draws (near joint
     1's axis, or pressed along it) are thrown away, as are those with another link, moving or fixed, within
-    `clearance`. So points are uniform by area only among those that can be touched and felt.
+    `clearance`, and those in a fold of the link, where an obstacle touches at several points. So points are
+    uniform by area only among those that can be touched and felt.
 
     Args:
         model: of the same robot; gives the joints' limits, the middle 90 % of which is drawn from (a turn
@@ -167,7 +168,7 @@ def _judge(
     if any(query.near(q, other, clearance) is not None for other in robot.link_names if other != link):
         return None
     contact = query.at(q, link)
-    if not 0.0 < contact.penetration < _DEEPEST * obstacle.rounding:
+    if not 0.0 < contact.penetration < _DEEPEST * obstacle.rounding or not query.single(q, contact):
         return None
     force = -stiffness * contact.penetration * contact.normal
     torque = robot.jacobian(q, link, contact.point)[:3].T @ force
@@ -189,4 +190,5 @@ def _random_pose(model: pin.Model, rng: np.random.Generator) -> FloatArray:
 
 
 def _log_uniform(rng: np.random.Generator, limits: tuple[float, float]) -> float:
-    return float(np.exp(rng.uniform(*np.log(limits))))
+    low, high = limits
+    return low * float((high / low) ** rng.uniform())
