@@ -16,14 +16,14 @@ from .reference_particle_filter import ReferenceParticleFilter
 from .timing import Comparison, Contestant, Pace, interleave
 
 PARTICLES, MANY, FEW = 10_000, 100_000, 300
-STEPS = 30
+STEPS = 20
 # Where all contestants find the contact.
 LINK = "iiwa_link_5"
 PANDA_LINK = "panda_link6"
 NEAR = 0.03  # [m]
 # A step takes longer while the particles are scattered: always a whole run, from the spread on.
 RUN = "reset()\nfor step in scene: update(step.q, step.tau_ext)"
-ROUNDS = 10  # a run of the peers takes seconds
+ROUNDS = 10  # of the others for one here: a run of the peers takes seconds
 MAX_US, MAX_US_TWO_THREADS = 5000.0, 3000.0
 MIN_RATIO = 20.0
 MIN_STEPS_PER_SECOND = 2200.0
@@ -32,14 +32,15 @@ MAX_GROWTH = 11.0  # for ten times the particles
 
 def compare(pace: Pace) -> list[Comparison]:
     """An arm that sways against a sphere; every step has a new pose and new torques."""
-    pace = replace(pace, rounds=min(pace.rounds, ROUNDS))
+    pace = replace(pace, rounds=max(1, pace.rounds // ROUNDS))
     iiwa = robots.iiwa14_meshes()
     scene = pressed_sphere.path(iiwa[1], LINK, STEPS)
     return [
-        _beside_reference(*iiwa, LINK, (2, 4), pace),
+        # With a point each 1 mm, the nearest is off by half of that on average: the noise of the last steps.
+        _beside_reference(*iiwa, LINK, (1, 2, 4), pace),
         # The search on its rounder links takes the peer far longer.
-        _beside_reference(*robots.panda(), PANDA_LINK, (4,), pace),
-        _two_threads(*iiwa, scene, pace),
+        _beside_reference(*robots.panda(), PANDA_LINK, (2,), pace),
+        _two_threads(iiwa[0], iiwa[1], scene, pace),
         _growth(iiwa[0], iiwa[1], scene, pace),
         _few(*iiwa, scene, pace),
     ]
@@ -62,23 +63,19 @@ def _beside_reference(
     return Comparison(task, timings, max_us=MAX_US, min_ratio=MIN_RATIO)
 
 
-def _two_threads(
-    name: str, robot: cs.Robot, model: Any, scene: list[pressed_sphere.Pressed], pace: Pace
-) -> Comparison:
+def _two_threads(name: str, robot: cs.Robot, scene: list[pressed_sphere.Pressed], pace: Pace) -> Comparison:
     """On the wall: a process's time counts both threads."""
     with all_cores():
         two, one = (cs.ContactParticleFilter(robot, particles=PARTICLES, threads=n) for n in (2, 1))
-        reference = ReferenceParticleFilter(model, robot, particles=PARTICLES, workers=2)
-        for each in (two, one, reference):
+        for each in (two, one):
             _check(each, scene, LINK)
         contestants = [
             _contestant("contactsense", two, scene),
-            _contestant("numpy, cKDTree with two workers", reference, scene),
             _contestant("contactsense, one thread", one, scene),
         ]
         timings = interleave(contestants, replace(pace, clock=time.perf_counter))
     task = f"particle filter, {name}, {PARTICLES:,}, two threads, wall"
-    return Comparison(task, timings, max_us=MAX_US_TWO_THREADS, min_ratio=MIN_RATIO)
+    return Comparison(task, timings, max_us=MAX_US_TWO_THREADS)
 
 
 def _growth(name: str, robot: cs.Robot, scene: list[pressed_sphere.Pressed], pace: Pace) -> Comparison:

@@ -54,16 +54,15 @@ class ReferenceParticleFilter:
         sharpness: tuple[float, float] = (1.0, 30.0),  # [1/Nm]
         point_noise: tuple[float, float] = (10e-3, 0.5e-3),  # [m]
         relative_noise: tuple[float, float] = (0.1, 0.01),  # of force and stiffness
-        narrowing: int = 20,
+        narrowing: int = 15,
         spacing: float = 2e-3,  # of the points that stand for a surface [m]
-        workers: int = 1,
     ) -> None:
         self.model, self.data = model, model.createData()
         self.count, self.seed = particles, seed
         self.force_range, self.stiffness_range = force_range, stiffness_range
         self.log_radii = np.log(radius_range)
         self.sharpness, self.point_noise, self.relative_noise = sharpness, point_noise, relative_noise
-        self.narrowing, self.workers = narrowing, workers
+        self.narrowing = narrowing
         self.links = [
             link for name in robot.link_names if (link := self._link(robot, name, spacing)).joint > 0
         ]
@@ -127,7 +126,7 @@ class ReferenceParticleFilter:
         distance = np.empty(n)
         for link, pose, part in zip(self.links, poses, self._parts(), strict=True):
             local = (centre[part] - pose.translation) @ pose.rotation
-            distance[part], nearest = link.tree.query(local, workers=self.workers)
+            distance[part], nearest = link.tree.query(local)
             self._place(part, link, pose, nearest)
         self.force += (radius - distance) * self.stiffness
         noise = relative_noise * rng.standard_normal((2, n))

@@ -20,6 +20,10 @@ class Filter:
     motion: MotionModel = "curvature"
     likelihood: Likelihood = "gaussian"
     noise: float = 0.0  # [%] of each external torque, standard deviation
+    schedule: Literal["adaptive", "paper"] = "adaptive"
+    # What the filter is told of its torques, beyond the noise above.
+    torque_noise: float = 0.02  # [Nm]
+    relative_noise: float = 0.01
 
 
 @dataclass(frozen=True)
@@ -36,14 +40,16 @@ class Experiment:
 
 CURVATURE = Filter("curvature")
 MODELS = (CURVATURE, Filter("fixed on link", "fixed_on_link"), Filter("fixed in world", "fixed_in_world"))
-PRINTED = Filter("as printed", likelihood="exponential")
+PRINTED = Filter("as printed", likelihood="exponential", schedule="paper")
 NOISES = (CURVATURE, Filter("5 % noise", noise=5.0), Filter("10 % noise", noise=10.0))
+# Friction turns a force away from the normal: torques that follow from the normal are off by such a share.
+RUBBING = Filter("curvature", relative_noise=0.1)
 SPHERE = (*MODELS, PRINTED, *NOISES[1:])
 
 EXPERIMENTS = (
     Experiment("random", "random", "sphere", SPHERE),
     Experiment("deliberate", "deliberate", "sphere", SPHERE),
     Experiment("cube", "random", "cube", (CURVATURE,)),
-    Experiment("pole", "null space", "cylinder", (CURVATURE,), friction=0.2, model_error=0.05),
+    Experiment("pole", "null space", "cylinder", (RUBBING,), friction=0.2, model_error=0.05),
 )
 BY_NAME = {experiment.name: experiment for experiment in EXPERIMENTS}

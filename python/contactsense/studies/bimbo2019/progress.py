@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...sim import ContactRun
 from .arm import Arm, load_arm
-from .experiments import BY_NAME, CURVATURE, Filter
+from .experiments import BY_NAME
 from .options import Options
 from .study import trial_seed
 from .tracking import track
@@ -54,7 +54,7 @@ def watch(
     Raises:
         InputError: this trial could not be recorded.
     """
-    arm, kind = load_arm(options), _filter(experiment)
+    arm, kind = load_arm(options), BY_NAME[experiment].filters[0]
     seed = trial_seed(options, experiment, link, number)
     run = record(arm, BY_NAME[experiment], link, number, seed)
     rows = {round(share * (len(run) - 1)) for share in shares}
@@ -66,10 +66,6 @@ def watch(
 
     track(arm, run, kind, options, seed, keep)
     return Progress(arm, link, run, tuple(moments))
-
-
-def _filter(experiment: str) -> Filter:
-    return next(kind for kind in BY_NAME[experiment].filters if kind.name == CURVATURE.name)
 
 
 def _moment(arm: Arm, run: ContactRun, row: int, particles: Any, estimate: Any) -> Moment:

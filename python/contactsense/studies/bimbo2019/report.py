@@ -9,7 +9,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from .experiments import BY_NAME, CURVATURE, MODELS, NOISES, PRINTED, Experiment, Filter
+from .experiments import BY_NAME, MODELS, NOISES, PRINTED, Experiment, Filter
 from .metric import Outcome
 from .names import short
 from .score import score
@@ -37,7 +37,9 @@ def print_study(study: Study, console: Console) -> None:
             study, "Noise on the torques, deliberate", [(deliberate, kind) for kind in NOISES], "no noise"
         ),
         _errors(
-            study, "Other obstacles", [(BY_NAME[name], CURVATURE) for name in ("random", "cube", "pole")]
+            study,
+            "Other obstacles",
+            [(each, each.filters[0]) for each in (random, BY_NAME["cube"], BY_NAME["pole"])],
         ),
         *(_confidence(study, experiment) for experiment in BY_NAME.values()),
     ]
@@ -95,7 +97,7 @@ def _confidence(study: Study, experiment: Experiment) -> Table:
     ):
         sheet.add_column(column, justify="right", no_wrap=True)
     for link in (*study.links, None):
-        figures = score(study.outcomes(experiment, CURVATURE, link))
+        figures = score(study.outcomes(experiment, experiment.filters[0], link))
         if link is None:
             sheet.add_section()
         sheet.add_row(

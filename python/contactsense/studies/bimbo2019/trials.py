@@ -13,7 +13,6 @@ from ...sim import (
     ContactPath,
     ContactRun,
     Pace,
-    PenaltyContact,
     TouchScene,
     joint_exploration,
     null_space_exploration,
@@ -38,7 +37,6 @@ PACES = {  # some 10 s each
 }
 ELBOW = np.deg2rad(12.0)
 OBSERVER_GAIN = 200.0  # [1/s]
-SLIP_SPEED = 0.02  # of the regularised friction [m/s]
 LEAST = 0.6  # share of the run that must be in contact
 STIFFNESS = (1e3, 1e4)  # of the contact [N/m]
 # Bent and clear of singular poses: shares of half of each joint's range, from its middle.
@@ -104,13 +102,7 @@ def _record(arm: Arm, experiment: Experiment, scene: TouchScene, path: ContactPa
     true_model = arm.model
     if experiment.model_error:
         true_model = perturbed_model(arm.model, mass=experiment.model_error, seed=seed)
-    contact = PenaltyContact(
-        arm.robot,
-        scene.obstacle,
-        stiffness=scene.stiffness,
-        friction=experiment.friction,
-        slip_speed=SLIP_SPEED,
-    )
+    contact = scene.contact(arm.robot, friction=experiment.friction)
     run = record_run(
         arm.robot, arm.model, contact, path, true_model=true_model, observer_gain=OBSERVER_GAIN, rate=RATE
     )
