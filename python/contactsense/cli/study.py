@@ -139,6 +139,10 @@ def bimbo2019(
     link: Annotated[
         list[str] | None, typer.Option(help="Link to touch; may be repeated (default: all that move).")
     ] = None,
+    experiment: Annotated[
+        list[str] | None,
+        typer.Option(help="random, deliberate, cube or pole; may be repeated (default: all)."),
+    ] = None,
     trials: Annotated[int, typer.Option(help="A link, in every experiment.")] = 5,
     particles: Annotated[int, typer.Option(help="Of every filter.")] = 10_000,
     seed: Annotated[int, typer.Option(help="Of poses, points, motions, noise and filters.")] = 0,
@@ -153,7 +157,7 @@ def bimbo2019(
     from ..studies.bimbo2019.options import Options
 
     folders = tuple(str(folder) for folder in package_dir or ())
-    options = Options(robot, folders, trials, particles, seed, tuple(link or ()))
+    options = Options(robot, folders, trials, particles, seed, tuple(link or ()), tuple(experiment or ()))
     save = _picture_writer("bimbo2019") if png is not None else None
     with _progress() as show:
         result = study.run(options, processes=processes, progress=show)

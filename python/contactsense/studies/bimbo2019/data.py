@@ -6,7 +6,7 @@ from dataclasses import asdict
 from typing import Any
 
 from ..plain import plain
-from .experiments import EXPERIMENTS, Experiment, Filter
+from .experiments import Experiment, Filter
 from .score import score
 from .study import Study
 
@@ -18,7 +18,7 @@ def as_data(study: Study) -> dict[str, Any]:
             "study": "bimbo2019",
             "options": asdict(study.options),
             "links": study.links,
-            "experiments": [_experiment(study, experiment) for experiment in EXPERIMENTS],
+            "experiments": [_experiment(study, experiment) for experiment in study.options.chosen()],
         }
     )
     return data

@@ -35,8 +35,9 @@ def draw_noise(figure: Figure, study: Study) -> None:
 
 def _draw(figure: Figure, study: Study, kinds: Sequence[Filter], colours: Sequence[str], title: str) -> None:
     figure.suptitle(title, fontsize=13, weight="bold", x=0.02, ha="left")
-    axes = figure.subplots(1, len(PANELS), sharey=True)
-    for each, (name, about) in zip(axes, PANELS, strict=True):
+    panels = [panel for panel in PANELS if BY_NAME[panel[0]] in study.options.chosen()] or PANELS
+    axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
+    for each, (name, about) in zip(axes, panels, strict=True):
         rows = [(_label(kind, kinds), BY_NAME[name], kind) for kind in kinds]
         grouped_bars(each, study, rows, colours)
         each.set_title(f"Sphere, {about}")

@@ -22,7 +22,8 @@ TRUE_LINK = 3  # counted from the base, as in the paper's figure
 def draw_progress(figure: Figure, study: Study) -> None:
     """Upper row: on the body; lower row: force over distance from the base."""
     link = study.links[min(TRUE_LINK, len(study.links)) - 1]
-    progress = watch(study.options, "deliberate", link, SHARES)
+    name = next((each.name for each in study.options.chosen() if each.setup == "deliberate"), None)
+    progress = watch(study.options, name or study.options.chosen()[0].name, link, SHARES)
     figure.suptitle(
         f"A contact on {short(link, study.links)}: what the filter holds possible while the arm moves",
         fontsize=13,

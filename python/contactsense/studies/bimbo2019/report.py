@@ -9,7 +9,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from .experiments import BY_NAME, MODELS, NOISES, PRINTED, Experiment, Filter
+from .experiments import MODELS, NOISES, PRINTED, Experiment, Filter
 from .metric import Outcome
 from .names import short
 from .score import score
@@ -27,21 +27,16 @@ NOTES = (
 
 def print_study(study: Study, console: Console) -> None:
     """All tables, and how to read them."""
-    random, deliberate = BY_NAME["random"], BY_NAME["deliberate"]
-    models = (*MODELS, PRINTED)
+    models, chosen = (*MODELS, PRINTED), study.options.chosen()
+    balls = [experiment for experiment in chosen if experiment.obstacle == "sphere"]
     sheets = [
-        _errors(study, "Spheres, random poses, points and motions", [(random, kind) for kind in models]),
-        _errors(study, "Spheres, motions that move the contact", [(deliberate, kind) for kind in models]),
-        _errors(study, "Noise on the torques, random", [(random, kind) for kind in NOISES], "no noise"),
-        _errors(
-            study, "Noise on the torques, deliberate", [(deliberate, kind) for kind in NOISES], "no noise"
+        *(_errors(study, f"Motion models, {each.name}", [(each, kind) for kind in models]) for each in balls),
+        *(
+            _errors(study, f"Noise, {each.name}", [(each, kind) for kind in NOISES], "no noise")
+            for each in balls
         ),
-        _errors(
-            study,
-            "Other obstacles",
-            [(each, each.filters[0]) for each in (random, BY_NAME["cube"], BY_NAME["pole"])],
-        ),
-        *(_confidence(study, experiment) for experiment in BY_NAME.values()),
+        _errors(study, "Obstacles", [(each, each.filters[0]) for each in chosen if each not in balls[1:]]),
+        *(_confidence(study, experiment) for experiment in chosen),
     ]
     for sheet in sheets:
         console.print(sheet)

@@ -11,7 +11,7 @@ import numpy as np
 from ... import InputError
 from ..parallel import each
 from .arm import load_arm
-from .experiments import BY_NAME, EXPERIMENTS, Experiment, Filter
+from .experiments import BY_NAME, Experiment, Filter
 from .metric import Outcome
 from .options import Options
 from .tracking import track
@@ -67,7 +67,7 @@ def run(
     arm = load_arm(options)
     items = [
         (options, experiment.name, link, number)
-        for experiment in EXPERIMENTS
+        for experiment in options.chosen()
         for number in range(options.trials)
         for link in arm.links
     ]
