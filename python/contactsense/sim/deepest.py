@@ -4,7 +4,7 @@ The deepest point is the point of the link's surface that is nearest to the obst
 normal runs between the two, also on edges and corners of the mesh. For a sphere that is the nearest point to
 its centre. For a pole and a cube, coal finds the nearest pair of the surface's triangles and the core; on
 exact primitives, which it gets as triangles, the pair is then drawn to the true surface by alternate
-projections.
+projections, their steps lengthened after Barzilai and Borwein (1988).
 """
 
 from __future__ import annotations
@@ -119,13 +119,26 @@ class ContactQuery:
     def _polish(
         self, surface: Surface, rotation: FloatArray, origin: FloatArray, on_core: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        for _ in range(_ROUNDS):
+        least, best, step = np.inf, (on_core, on_core), 1.0
+        before, slope_before = on_core, np.zeros(3)
+        for turn in range(_ROUNDS):
             local = surface.closest_points(((on_core - origin) @ rotation)[None]).points[0]
             on_link = rotation @ local + origin
-            before, on_core = on_core, self.obstacle.project(on_link[None])[0]
+            slope = on_core - on_link
+            gap = float(np.sqrt(slope @ slope))
+            way, change = on_core - before, slope - slope_before
+            length, product = float(way @ way), float(way @ change)
+            if gap < least:
+                least, best = gap, (on_link, on_core)
+                step = length / product if turn and product > 1e-3 * length else 1.0
+            else:  # A long step that led away is taken back; a plain projection never leads away.
+                (on_link, on_core), step = best, 1.0
+                slope = on_core - on_link
+            before, slope_before = on_core, slope
+            on_core = self.obstacle.project((on_core - max(step, 1.0) * slope)[None])[0]
             if float(np.abs(on_core - before).max()) < _STILL:
                 break
-        return on_link, on_core
+        return best
 
 
 def _at_center(

@@ -1,12 +1,14 @@
-//! `update` and `isolate` allocate nothing after the first call. One test: the counter is the process's.
+//! `update` and `isolate` allocate nothing after the first call.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::hint::black_box;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::Mutex;
 
 use contactsense::isolation::{ContactIsolator, IsolatorOptions};
 use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
 use contactsense::observer::MomentumObserver;
+use contactsense::particle::{ContactParticleFilter, FilterOptions};
 use contactsense::robot::Robot;
 use contactsense::sensor::{Convention, ForceTorqueSensor, LoadCompensator};
 use contactsense::spatial::Pose;
@@ -15,6 +17,8 @@ use nalgebra::Vector3;
 mod common;
 
 static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
+/// The counter is the process's: one test at a time.
+static ALONE: Mutex<()> = Mutex::new(());
 
 struct Counting;
 
@@ -82,6 +86,7 @@ fn touches(robot: &Robot, q: &[f64]) -> Vec<Vec<f64>> {
 
 #[test]
 fn a_tick_allocates_nothing() {
+    let _alone = ALONE.lock().expect("the other test has not failed");
     assert!(allocations(|| drop(black_box(Vec::<u8>::with_capacity(100)))) > 0, "the counter is dead");
 
     for robot in [common::arm(), common::humanoid()] {
@@ -178,6 +183,29 @@ fn a_tick_allocates_nothing() {
         assert_eq!(allocations(work), 0, "monitor of {} with sensors", robot.name());
         monitor.report_into(&mut report);
         assert_eq!((report.sensors_left_out.len(), report.wrenches.len()), (1, readings.len()));
+    }
+}
+
+#[test]
+fn an_update_of_particles_allocates_nothing() {
+    let _alone = ALONE.lock().expect("the other test has not failed");
+    let robot = common::meshed_arm();
+    let run = common::ball_run(&robot, "arm_4", 40);
+    let idle = vec![0.0; robot.nv()];
+    for threads in [1, 2] {
+        let options = FilterOptions { particles: 3000, threads, ..FilterOptions::default() };
+        let mut filter = ContactParticleFilter::new(robot.clone(), options).expect("valid options");
+        filter.update(&run.poses[0], &run.torques[0]).expect("valid input");
+        let mut felt = 0;
+        let work = || {
+            for (q, torque) in run.poses.iter().zip(&run.torques) {
+                felt += usize::from(filter.update(q, torque).expect("valid input").contact);
+            }
+            // The contact ends, and another search begins.
+            filter.update(&run.poses[0], &idle).expect("valid input");
+        };
+        assert_eq!(allocations(work), 0, "{threads} threads");
+        assert!(felt > 30, "the contact was felt: {felt}");
     }
 }
 

@@ -18,6 +18,7 @@ mod parallel;
 mod rejuvenation;
 mod resampling;
 mod schedule;
+mod stages;
 mod swarm;
 
 pub use columns::Columns;
@@ -25,3 +26,4 @@ pub use estimate::{ContactEstimate, Event, Mode};
 pub use filter::ContactParticleFilter;
 pub use options::{FilterOptions, Likelihood, Motion};
 pub use schedule::Schedule;
+pub use stages::Stages;

@@ -41,10 +41,10 @@ enum Purpose {
     Rejuvenation,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Swarm {
     robot: Arc<Robot>,
-    options: FilterOptions,
+    pub options: FilterOptions,
     torque_noise: Vec<f64>,
     threshold: Vec<f64>,
     /// The measurement: torques, and their noise.
@@ -64,7 +64,7 @@ pub(super) struct Swarm {
     /// Updates since the start or the last reset.
     step: u64,
     /// Updates since the particles were last spread.
-    age: u64,
+    pub age: u64,
     /// Updates in a row that no particle explained.
     unexplained: u32,
 }
@@ -133,15 +133,21 @@ impl Swarm {
         let noise = Noise::at(&self.options, self.age, moved);
         self.predict(&noise);
         let effective = self.weigh(moved, &noise);
-        self.modes.find(&self.robot, &self.frames, &self.particles, &self.weights);
-        let left = self.judge();
-        self.tell(event, effective, left);
+        let left = self.conclude(event, effective);
         if effective < RESAMPLE * self.particles.len() as f64 {
             self.resample(&noise, moved, left);
         }
         self.step += 1;
         self.age += 1;
         self.estimate.updates = self.step;
+    }
+
+    /// Says what the weighted particles show; returns the part of the torque that the best one leaves over.
+    pub fn conclude(&mut self, event: Event, effective: f64) -> f64 {
+        self.modes.find(&self.robot, &self.frames, &self.particles, &self.weights);
+        let left = self.judge();
+        self.tell(event, effective, left);
+        left
     }
 
     fn stream(&self, purpose: Purpose) -> Stream {
@@ -180,7 +186,7 @@ impl Swarm {
         self.unexplained = 0;
     }
 
-    fn predict(&mut self, noise: &Noise) {
+    pub fn predict(&mut self, noise: &Noise) {
         let motion = Move {
             motion: self.options.motion,
             log_radius: self.options.radius_range.map(f64::ln),
@@ -199,7 +205,7 @@ impl Swarm {
     }
 
     /// Weighs the particles; returns how many are effective.
-    fn weigh(&mut self, moved: f64, noise: &Noise) -> f64 {
+    pub fn weigh(&mut self, moved: f64, noise: &Noise) -> f64 {
         let mut weighing = Weighing {
             likelihood: self.options.likelihood,
             measured: self.frames.measured,
@@ -282,7 +288,7 @@ impl Swarm {
         }
     }
 
-    fn resample(&mut self, noise: &Noise, moved: f64, left: f64) {
+    pub fn resample(&mut self, noise: &Noise, moved: f64, left: f64) {
         let count = self.particles.len();
         let anew = ((Adaptation::fresh_share(left) * count as f64) as usize).min(count - 1);
         let kept = count - anew;

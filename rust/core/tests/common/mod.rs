@@ -83,6 +83,39 @@ pub fn arm() -> Arc<Robot> {
     Arc::new(Robot::new(description).expect("a valid description"))
 }
 
+/// The same arm with a mesh of 640 triangles a link: 20 around, barrels of 0.05 to 0.07 m.
+pub fn meshed_arm() -> Arc<Robot> {
+    let mut description = empty("meshed arm");
+    chain(&mut description, "arm", 0, Vector3::new(0.0, 0.0, 0.2), 7);
+    for link in &mut description.links {
+        link.geometry = vec![Part { geometry: barrel(20, 16, 0.3), pose: Pose::identity() }];
+    }
+    Arc::new(Robot::new(description).expect("a valid description"))
+}
+
+/// A closed barrel along z, from -0.06 m on: rings of `around` vertices, a vertex at both ends.
+fn barrel(around: u32, rings: u32, length: f64) -> Geometry {
+    let mut vertices = vec![[0.0, 0.0, -0.06], [0.0, 0.0, length + 0.06]];
+    let mut triangles = vec![];
+    let at = |ring: u32, k: u32| 2 + ring * around + k % around;
+    for ring in 0..rings {
+        let share = f64::from(ring) / f64::from(rings - 1);
+        let radius = 0.05 + 0.02 * (std::f64::consts::PI * share).sin();
+        for k in 0..around {
+            let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(around)).sin_cos();
+            vertices.push([radius * cos, radius * sin, length * share]);
+            if ring + 1 < rings {
+                let (a, b, c, d) = (at(ring, k), at(ring, k + 1), at(ring + 1, k + 1), at(ring + 1, k));
+                triangles.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+    }
+    for k in 0..around {
+        triangles.extend([[0, at(0, k + 1), at(0, k)], [1, at(rings - 1, k), at(rings - 1, k + 1)]]);
+    }
+    Geometry::Mesh { vertices, triangles }
+}
+
 /// A floating trunk with four limbs of six joints.
 pub fn humanoid() -> Arc<Robot> {
     let mut description = empty("humanoid");
@@ -127,4 +160,70 @@ pub fn numbers(count: usize, seed: f64) -> Vec<f64> {
 pub fn torque_of(robot: &Robot, q: &[f64], link: usize, point: [f64; 3], force: Vector3<f64>) -> Vec<f64> {
     let jacobian = robot.jacobian(q, link, Some(point)).expect("a valid link");
     (jacobian.rows(0, 3).transpose() * force).as_slice().to_vec()
+}
+
+/// An arm in touch with a ball: its poses, and what a springy ball that stays puts on the joints.
+pub struct BallRun {
+    /// Index of the touched link.
+    pub link: usize,
+    pub poses: Vec<Vec<f64>>,
+    pub torques: Vec<Vec<f64>>,
+    /// Contact points, world frame [m].
+    pub points: Vec<Vector3<f64>>,
+}
+
+/// Small motions of an arm against a ball of 5 cm and 2500 N/m, pressed in by 8 mm at the start.
+pub fn ball_run(robot: &Robot, link: &str, updates: usize) -> BallRun {
+    const RADIUS: f64 = 0.05;
+    const STIFFNESS: f64 = 2500.0;
+    let link = robot.link(link).expect("a link of the robot");
+    let surface = robot.links()[link].surface.as_ref().expect("a touchable link");
+    let start = configuration(robot, 0.4);
+    let sample = surface.sample(1, 3)[0];
+    let centre = robot
+        .link_pose(&start, link)
+        .expect("a valid link")
+        .transform_point(&(sample.point + sample.normal * (RADIUS - 0.008)));
+    let mut run = BallRun { link, poses: vec![], torques: vec![], points: vec![] };
+    for update in 0..updates {
+        // As large as keeps the ball pressed in by one to twenty millimetres.
+        let mut amplitude = 0.03;
+        let (q, pose, local, near) = loop {
+            let q = swing(robot, &start, update, amplitude);
+            let pose = robot.link_pose(&q, link).expect("a valid link");
+            let local = pose.inverse_transform_point(&centre);
+            let near = surface.closest_point(&local);
+            let outside = (local - near.point).dot(&near.normal) > 0.0;
+            if outside && (RADIUS - 0.02..RADIUS - 0.001).contains(&near.distance) {
+                break (q, pose, local, near);
+            }
+            amplitude *= 0.5;
+        };
+        let outward = (local - near.point) / near.distance;
+        let force = STIFFNESS * (RADIUS - near.distance);
+        let point = pose.transform_point(&near.point);
+        run.torques.push(torque_of(robot, &q, link, point.into(), pose.rotation * outward * -force));
+        run.poses.push(q);
+        run.points.push(point);
+    }
+    run
+}
+
+/// A configuration near `start`.
+fn swing(robot: &Robot, start: &[f64], update: usize, amplitude: f64) -> Vec<f64> {
+    let mut q = start.to_vec();
+    let mut index = 0;
+    for (k, kind) in robot.joint_kinds().enumerate() {
+        let phase = 1.3 * k as f64;
+        let angle = amplitude * (((0.4 + 0.13 * k as f64) * update as f64 + phase).sin() - phase.sin());
+        if kind == JointKind::Continuous {
+            let (sin, cos) = angle.sin_cos();
+            let (c, s) = (q[index], q[index + 1]);
+            (q[index], q[index + 1]) = (c * cos - s * sin, s * cos + c * sin);
+        } else {
+            q[index] += angle;
+        }
+        index += kind.nq();
+    }
+    q
 }

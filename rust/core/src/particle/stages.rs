@@ -1,0 +1,64 @@
+//! An update in its parts, each by itself, to be timed.
+
+use std::sync::Arc;
+
+use super::columns::Columns;
+use super::options::FilterOptions;
+use super::schedule::Noise;
+use super::swarm::Swarm;
+use crate::error::Result;
+use crate::robot::Robot;
+
+/// A filter whose updates are done part by part.
+#[derive(Debug, Clone)]
+pub struct Stages(Swarm);
+
+impl Stages {
+    /// A filter after one whole update.
+    ///
+    /// # Errors
+    /// [`Error::Input`](crate::Error::Input) names the option or argument.
+    pub fn new(robot: Arc<Robot>, options: FilterOptions, q: &[f64], tau_ext: &[f64]) -> Result<Self> {
+        let mut swarm = Swarm::new(robot, options)?;
+        swarm.read(q, tau_ext)?;
+        swarm.step();
+        Ok(Stages(swarm))
+    }
+
+    /// Moves all particles to a pose and computes what their forces do to the joints.
+    ///
+    /// # Errors
+    /// [`Error::Input`](crate::Error::Input) names the argument.
+    pub fn motion(&mut self, q: &[f64], tau_ext: &[f64]) -> Result<()> {
+        self.0.read(q, tau_ext)?;
+        let noise = self.noise();
+        self.0.predict(&noise);
+        Ok(())
+    }
+
+    /// Weighs all particles, sharpness chosen first; returns how many are effective.
+    pub fn likelihood(&mut self) -> f64 {
+        let noise = self.noise();
+        self.0.weigh(self.0.frames.displacement(), &noise)
+    }
+
+    /// Draws all particles anew by their weights, and moves copies apart.
+    pub fn resampling(&mut self) {
+        let noise = self.noise();
+        self.0.resample(&noise, self.0.frames.displacement(), 0.0);
+    }
+
+    /// Finds the modes and says the estimate.
+    pub fn estimate(&mut self) {
+        self.0.conclude(crate::particle::Event::Continued, 1.0);
+    }
+
+    /// The particles.
+    pub fn particles(&self) -> &Columns {
+        &self.0.particles
+    }
+
+    fn noise(&self) -> Noise {
+        Noise::at(&self.0.options, self.0.age, self.0.frames.displacement())
+    }
+}
