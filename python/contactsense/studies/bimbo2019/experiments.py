@@ -39,8 +39,8 @@ class Experiment:
 
 
 CURVATURE = Filter("curvature")
-MODELS = (CURVATURE, Filter("fixed on link", "fixed_on_link"), Filter("fixed in world", "fixed_in_world"))
-PRINTED = Filter("as printed", likelihood="exponential", schedule="paper")
+MODELS = (CURVATURE, Filter("on link", "fixed_on_link"), Filter("in world", "fixed_in_world"))
+PRINTED = Filter("printed", likelihood="exponential", schedule="paper")
 NOISES = (CURVATURE, Filter("5 % noise", noise=5.0), Filter("10 % noise", noise=10.0))
 # Friction turns a force away from the normal: torques that follow from the normal are off by such a share.
 RUBBING = Filter("curvature", relative_noise=0.1)

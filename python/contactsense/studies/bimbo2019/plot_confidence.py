@@ -22,7 +22,8 @@ def draw_confidence(figure: Figure, study: Study) -> None:
     for each, (name, _) in zip(axes, SHOWN, strict=False):
         _convergence(each, study, name)
     axes[0].set_ylabel("median error of the point, cm")
-    axes[1].legend(frameon=False, fontsize=8.5, ncols=2)
+    if axes[1].lines:
+        axes[1].legend(frameon=False, fontsize=8.5, ncols=2)
     _coverage(axes[2], study)
 
 

@@ -50,7 +50,7 @@ def _label(kind: Filter, kinds: Sequence[Filter]) -> str:
 
 
 def grouped_bars(axes: Any, study: Study, bars: Sequence[Bar], colours: Sequence[str]) -> None:
-    """Mean as a bar, median as a line across it, every trial as a dot; right-link share in % beneath."""
+    """Mean as a bar, median as a line across it, every trial as a dot; share of right links beneath."""
     width = 0.84 / len(bars)
     for number, ((label, experiment, kind), colour) in enumerate(zip(bars, colours, strict=False)):
         for place, link in enumerate(study.links):
@@ -67,22 +67,23 @@ def grouped_bars(axes: Any, study: Study, bars: Sequence[Bar], colours: Sequence
             spread = x + 0.3 * width * np.linspace(-1, 1, len(errors))
             axes.scatter(spread, np.minimum(errors, top), s=5, color=TEXT, linewidths=0, zorder=3)
             right = 100 * np.mean([outcome.right for outcome in outcomes])
-            axes.annotate(
-                f"{right:.0f}",
-                (x, 0),
-                (0, -4),
-                textcoords="offset points",
-                ha="center",
-                va="top",
-                fontsize=6.5,
-                color=colour,
-            )
+            if right < 100:
+                _note(axes, f"{right:.0f}", (x, 0), -4, colour)
+            if mean > top:
+                _note(axes, f"{mean:.0f}", (x, top), 9, colour)
     axes.set_xticks(range(len(study.links)), [short(link, study.links) for link in study.links])
     axes.tick_params(axis="x", length=0, pad=14)
     axes.set_xlim(-0.6, len(study.links) - 0.4)
     axes.set_ylim(0, 100 * TOP)
     axes.grid(axis="y", color=GREY, alpha=0.25)
     axes.set_axisbelow(True)
+
+
+def _note(axes: Any, text: str, place: tuple[float, float], up: float, colour: str) -> None:
+    """`up` of `place` [points]."""
+    axes.annotate(
+        text, place, (0, up), textcoords="offset points", ha="center", va="top", fontsize=7, color=colour
+    )
 
 
 def finish(figure: Figure, axes: Any, columns: int) -> None:
@@ -94,5 +95,5 @@ def finish(figure: Figure, axes: Any, columns: int) -> None:
         loc="outside lower center",
         ncols=columns,
         frameon=False,
-        title="bar: mean; line: median; dot: a trial; small number: trials on the right link, %",
+        title="bar: mean; line: median; dot: a trial; beneath: trials on the right link, %, where not all",
     )

@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 
 from ...demo.style import TEXT
 from ...sim import obstacle_from_dict
+from ..robot_view import share_scale
 from .experiments import BY_NAME
 from .names import short
 from .plot_bodies import best_eye, draw_moment
@@ -37,6 +38,7 @@ def draw_obstacles(figure: Figure, study: Study) -> None:
         moment, obstacle = progress.moments[-1], obstacle_from_dict(progress.run.settings["obstacle"])
         draw_moment(each, progress.arm, moment, obstacle, best_eye(moment))
         each.set_title(f"{name.capitalize()} at {short(touched, study.links)}: end of a run", color=TEXT)
+    share_scale(axes[:2])
     bars = [(label, BY_NAME[name], BY_NAME[name].filters[0]) for label, name in BARS]
     grouped_bars(axes[2], study, bars, COLOURS)
     axes[2].set_title("Error of the point, cm")

@@ -31,7 +31,7 @@ def draw_progress(figure: Figure, study: Study) -> None:
         x=0.02,
         ha="left",
     )
-    axes = figure.subplots(2, len(progress.moments), height_ratios=(1.5, 1))
+    axes = figure.subplots(2, len(progress.moments), height_ratios=(1.1, 1))
     view = best_eye(progress.moments[0])
     obstacle = obstacle_from_dict(progress.run.settings["obstacle"])
     for (above, below), moment in zip(axes.T, progress.moments, strict=True):
@@ -45,7 +45,7 @@ def draw_progress(figure: Figure, study: Study) -> None:
         if below is not axes[1, 0]:
             below.set_yticklabels([])
     axes[1, 0].set_ylabel("force, N")
-    figure.colorbar(dots, ax=axes, label="torques not explained, share", shrink=0.5, pad=0.01)
+    figure.colorbar(dots, ax=axes, label="torques not explained, share", shrink=0.8, pad=0.01)
     handles = [
         axes[1, 0].plot([], [], "-", color=ESTIMATE, lw=2, label="true point and force")[0],
         axes[1, 0].plot([], [], "o", mfc="none", mec=TRUTH, ms=8, label="estimate")[0],

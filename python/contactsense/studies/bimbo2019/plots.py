@@ -31,7 +31,7 @@ PICTURES: dict[str, tuple[tuple[float, float], Callable[[Figure, Study], None]]]
     "noise.png": ((12.5, 5.0), draw_noise),
     "obstacles.png": ((12.5, 5.4), draw_obstacles),
     "confidence.png": ((12.5, 4.6), draw_confidence),
-    "progress.png": ((15.0, 8.0), draw_progress),
+    "progress.png": ((15.0, 5.8), draw_progress),
 }
 
 

@@ -17,7 +17,7 @@ from .study import Study
 
 NOTES = (
     "cm: mean/median distance of the estimated point from the true one, at the end of the run.",
-    "link: share of trials with the right link, %. As printed: exponential likelihood (5).",
+    "link: share of trials with the right link, %. Printed: likelihood (5), explicit schedule.",
     "90 %: share of trials where the 90 % region of the covariance holds the true point.",
     "spread: median standard deviation that the estimate gives for its point.",
     "p: mean probability of the true link. open: share said to be ambiguous; of wrong: the same, of",

@@ -32,10 +32,12 @@ TRIES = 10
 RATE = 25.0  # of the filter's updates [Hz]
 PACES = {  # some 10 s each
     "random": Pace(motions=40, duration=0.25),
-    "deliberate": Pace(motions=25, duration=0.4),
-    "null space": Pace(motions=25, duration=0.4),
+    "deliberate": Pace(motions=20, duration=0.5),
+    "null space": Pace(motions=20, duration=0.5),
 }
-ELBOW = np.deg2rad(12.0)
+TRAVEL = 0.08  # of the touched point, to and fro [m]
+TURN = np.deg2rad(20.0)  # of a joint, at most, for that
+ELBOW = np.deg2rad(12.0)  # of the joints, before they are projected
 OBSERVER_GAIN = 200.0  # [1/s]
 LEAST = 0.6  # share of the run that must be in contact
 STIFFNESS = (1e3, 1e4)  # of the contact [N/m]
@@ -94,7 +96,7 @@ def _path(arm: Arm, experiment: Experiment, scene: TouchScene, seed: int) -> Con
     if experiment.setup == "random":
         return joint_exploration(arm.robot, scene, pace=pace, seed=seed)
     if experiment.setup == "deliberate":
-        return sliding_exploration(arm.robot, scene, pace=pace, seed=seed)
+        return sliding_exploration(arm.robot, scene, travel=TRAVEL, largest=TURN, pace=pace, seed=seed)
     return null_space_exploration(arm.robot, scene, arm.links[-1], amplitude=ELBOW, pace=pace, seed=seed)
 
 
