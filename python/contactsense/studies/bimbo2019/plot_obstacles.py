@@ -23,21 +23,14 @@ def draw_obstacles(figure: Figure, study: Study) -> None:
     """The end of a run with each, and the errors by link."""
     axes = figure.subplots(1, 3, width_ratios=(1, 1, 2))
     for each, name in zip(axes, SHOWN, strict=False):
-        # The middle of the arm, else the first that has such a trial.
-        links = sorted(study.links, key=lambda link: abs(study.links.index(link) - len(study.links) // 2))
-        touched = next(
-            (link for link in links if study.outcomes(BY_NAME[name], BY_NAME[name].filters[0], link)), None
-        )
-        if touched is None:
+        trial = study.recorded(name, len(study.links) // 2)
+        if trial is None:
             each.set_axis_off()
             continue
-        number = next(
-            t.number for t in study.trials if (t.experiment, t.link) == (name, touched) and t.outcomes
-        )
-        progress = watch(study.options, name, touched, (1.0,), number)
+        progress = watch(study.options, trial, (1.0,))
         moment, obstacle = progress.moments[-1], obstacle_from_dict(progress.run.settings["obstacle"])
         draw_moment(each, progress.arm, moment, obstacle, best_eye(moment))
-        each.set_title(f"{name.capitalize()} at {short(touched, study.links)}: end of a run", color=TEXT)
+        each.set_title(f"{name.capitalize()} at {short(trial.link, study.links)}: end of a run", color=TEXT)
     share_scale(axes[:2])
     bars = [(label, BY_NAME[name], BY_NAME[name].filters[0]) for label, name in BARS]
     grouped_bars(axes[2], study, bars, COLOURS)

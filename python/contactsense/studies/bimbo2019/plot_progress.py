@@ -21,11 +21,14 @@ TRUE_LINK = 3  # counted from the base, as in the paper's figure
 
 def draw_progress(figure: Figure, study: Study) -> None:
     """Upper row: on the body; lower row: force over distance from the base."""
-    link = study.links[min(TRUE_LINK, len(study.links)) - 1]
-    name = next((each.name for each in study.options.chosen() if each.setup == "deliberate"), None)
-    progress = watch(study.options, name or study.options.chosen()[0].name, link, SHARES)
+    chosen = study.options.chosen()
+    name = next((each.name for each in chosen if each.setup == "deliberate"), chosen[0].name)
+    trial = study.recorded(name, TRUE_LINK - 1)
+    if trial is None:
+        return
+    progress = watch(study.options, trial, SHARES)
     figure.suptitle(
-        f"A contact on {short(link, study.links)}: what the filter holds possible while the arm moves",
+        f"A contact on {short(trial.link, study.links)}: what the filter holds possible while the arm moves",
         fontsize=13,
         weight="bold",
         x=0.02,

@@ -12,7 +12,7 @@ from ...sim import ContactRun
 from .arm import Arm, load_arm
 from .experiments import BY_NAME
 from .options import Options
-from .study import trial_seed
+from .study import Trial, trial_seed
 from .tracking import track
 from .trials import record
 
@@ -46,17 +46,11 @@ class Progress:
     moments: tuple[Moment, ...]
 
 
-def watch(
-    options: Options, experiment: str, link: str, shares: tuple[float, ...], number: int = 0
-) -> Progress:
-    """A trial of the study again, its particles kept at `shares` of the run.
-
-    Raises:
-        InputError: this trial could not be recorded.
-    """
-    arm, kind = load_arm(options), BY_NAME[experiment].filters[0]
-    seed = trial_seed(options, experiment, link, number)
-    run = record(arm, BY_NAME[experiment], link, number, seed)
+def watch(options: Options, trial: Trial, shares: tuple[float, ...]) -> Progress:
+    """A trial of the study again, with its experiment's first filter, seen at `shares` of the run."""
+    arm, experiment = load_arm(options), BY_NAME[trial.experiment]
+    seed = trial_seed(options, trial.experiment, trial.link, trial.number)
+    run = record(arm, experiment, trial.link, trial.number, seed)
     rows = {round(share * (len(run) - 1)) for share in shares}
     moments: list[Moment] = []
 
@@ -64,8 +58,8 @@ def watch(
         if row in rows:
             moments.append(_moment(arm, run, row, particles.particles, estimate))
 
-    track(arm, run, kind, options, seed, keep)
-    return Progress(arm, link, run, tuple(moments))
+    track(arm, run, experiment.filters[0], options, seed, keep)
+    return Progress(arm, trial.link, run, tuple(moments))
 
 
 def _moment(arm: Arm, run: ContactRun, row: int, particles: Any, estimate: Any) -> Moment:

@@ -48,6 +48,11 @@ class Study:
             if trial.outcomes and trial.experiment == experiment.name and link in (None, trial.link)
         ]
 
+    def recorded(self, experiment: str, near: int) -> Trial | None:
+        """The first trial of an experiment that could be recorded, on the link nearest to number `near`."""
+        trials = [each for each in self.trials if each.experiment == experiment and each.outcomes]
+        return min(trials, key=lambda each: abs(self.links.index(each.link) - near), default=None)
+
 
 def run(
     options: Options | None = None,
