@@ -195,5 +195,5 @@ def test_the_command_refuses(options: list[str], named: str, capsys: pytest.Capt
 
 
 def test_unknown_options_are_input_errors() -> None:
-    with pytest.raises(cs.InputError, match="random, deliberate, cube, pole"):
+    with pytest.raises(cs.InputError, match="random, deliberate, cube, smooth pole, pole"):
         Options(experiments=("tube",))

@@ -141,7 +141,7 @@ def bimbo2019(
     ] = None,
     experiment: Annotated[
         list[str] | None,
-        typer.Option(help="random, deliberate, cube or pole; may be repeated (default: all)."),
+        typer.Option(help="random, deliberate, cube, 'smooth pole', pole; may be repeated (default: all)."),
     ] = None,
     trials: Annotated[int, typer.Option(help="A link, in every experiment.")] = 5,
     particles: Annotated[int, typer.Option(help="Of every filter.")] = 10_000,

@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias
 MotionModel: TypeAlias = Literal["curvature", "fixed_on_link", "fixed_in_world"]
 Likelihood: TypeAlias = Literal["gaussian", "exponential"]
 Obstacle: TypeAlias = Literal["sphere", "cube", "cylinder"]
-# Random poses, points and small motions; chosen poses and motions that move the contact; of the elbow alone.
+# Random poses, points and small motions; chosen poses, and motions that move the contact, or the elbow alone.
 Setup: TypeAlias = Literal["random", "deliberate", "null space"]
 
 
@@ -50,6 +50,7 @@ EXPERIMENTS = (
     Experiment("random", "random", "sphere", SPHERE),
     Experiment("deliberate", "deliberate", "sphere", SPHERE),
     Experiment("cube", "random", "cube", (CURVATURE,)),
+    Experiment("smooth pole", "null space", "cylinder", (CURVATURE,)),
     Experiment("pole", "null space", "cylinder", (RUBBING,), friction=0.2, model_error=0.05),
 )
 BY_NAME = {experiment.name: experiment for experiment in EXPERIMENTS}

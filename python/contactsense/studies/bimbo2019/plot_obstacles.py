@@ -15,8 +15,8 @@ from .progress import watch
 from .study import Study
 
 SHOWN = ("cube", "pole")
-BARS = (("sphere", "random"), ("cube", "cube"), ("pole", "pole"))
-COLOURS = ("#D55E00", "#0072B2", "#009E73")
+BARS = (("sphere", "random"), ("cube", "cube"), ("smooth pole", "smooth pole"), ("pole", "pole"))
+COLOURS = ("#D55E00", "#0072B2", "#009E73", "#CC79A7")
 
 
 def draw_obstacles(figure: Figure, study: Study) -> None:

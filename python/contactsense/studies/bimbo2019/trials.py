@@ -69,7 +69,7 @@ def record(arm: Arm, experiment: Experiment, link: str, number: int, seed: int) 
 
 
 def _scene(arm: Arm, experiment: Experiment, link: str, number: int, seed: int) -> TouchScene:
-    chosen = experiment.setup == "deliberate"
+    chosen = experiment.setup != "random"
     return touch_scene(
         arm.robot,
         arm.model,
