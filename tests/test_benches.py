@@ -14,8 +14,8 @@ import pytest
 import contactsense as cs
 
 ROOT = Path(__file__).resolve().parents[1]
-PEERS = ("trimesh", "embreex", "igl", "fcpw", "idyntree")
-LEAST = {"observer": 2, "compensation": 2, "monitor": 6, "closest": 2, "rays": 2}
+PEERS = ("trimesh", "embreex", "igl", "fcpw", "idyntree", "scipy")
+LEAST = {"observer": 2, "compensation": 2, "monitor": 6, "closest": 2, "rays": 2, "particle_filter": 5}
 
 
 def run(*arguments: str) -> subprocess.CompletedProcess[str]:
@@ -43,6 +43,7 @@ def test_every_comparison_times_ours_beside_peers(report: dict, name: str) -> No
         "monitor": "monitor",
         "closest": "closest point",
         "rays": "all hits",
+        "particle_filter": "particle filter",
     }
     found = [c for c in report["comparisons"] if c["task"].startswith(starts[name])]
     assert len(found) >= LEAST[name]
@@ -64,4 +65,4 @@ def test_report_names_the_machine_and_versions(report: dict) -> None:
 def test_unknown_comparison_is_refused() -> None:
     done = run("nothing")
     assert done.returncode == 2
-    assert "observer, compensation, monitor, closest, rays" in done.stderr
+    assert "observer, compensation, monitor, closest, rays, particle_filter" in done.stderr

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import platform
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib import metadata
 from pathlib import Path
 
@@ -16,7 +18,8 @@ THREAD_VARIABLES = (
     "IGL_PARALLEL_FOR_NUM_THREADS",
     "TBB_NUM_THREADS",
 )
-PACKAGES = ("contactsense", "numpy", "pin", "trimesh", "embreex", "libigl", "fcpw")
+PACKAGES = ("contactsense", "numpy", "pin", "trimesh", "embreex", "libigl", "fcpw", "scipy")
+_allowed: set[int] = set()  # before the process was pinned
 
 
 def use_one_core(core: int | None = None) -> str:
@@ -25,9 +28,24 @@ def use_one_core(core: int | None = None) -> str:
         os.environ[variable] = "1"
     if not hasattr(os, "sched_setaffinity"):
         return "one thread a library; this system cannot pin a process to a core"
-    core = max(os.sched_getaffinity(0)) if core is None else core
+    _allowed.update(os.sched_getaffinity(0))
+    core = max(_allowed) if core is None else core
     os.sched_setaffinity(0, {core})
     return f"pinned to core {core}"
+
+
+@contextmanager
+def all_cores() -> Iterator[None]:
+    """Frees this thread, and those that it starts, from the one core meanwhile."""
+    if not _allowed:
+        yield
+        return
+    pinned = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, _allowed)
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, pinned)
 
 
 def describe() -> dict[str, str]:

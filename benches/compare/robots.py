@@ -18,6 +18,9 @@ Step = tuple[FloatArray, FloatArray, FloatArray]  # q, v, tau
 
 # example-robot-data installs beside Pinocchio.
 EXAMPLE_SHARE = Path(pin.__file__).resolve().parents[4] / "share"
+PANDA = EXAMPLE_SHARE / "example-robot-data/robots/panda_description/urdf/panda.urdf"
+# iiwa14 with meshes, in a folder beside the project that not everyone has.
+IIWA14_MESHES = Path(__file__).resolve().parents[3] / "shared/robots/iiwa14/iiwa14.urdf"
 TALOS = EXAMPLE_SHARE / "example-robot-data/robots/talos_data/robots/talos_reduced.urdf"
 
 
@@ -43,6 +46,25 @@ def talos() -> tuple[cs.Robot, Any]:
         raise FileNotFoundError(f"{TALOS} is absent: install example-robot-data")
     robot = cs.Robot.from_urdf(TALOS, package_dirs=EXAMPLE_SHARE, floating_base=True)
     return robot, pin.buildModelFromUrdf(str(TALOS), pin.JointModelFreeFlyer())
+
+
+def iiwa14_meshes() -> tuple[str, cs.Robot, Any]:
+    """iiwa14 with its meshes where they are there, else the packaged one; and a name that says which."""
+    if not IIWA14_MESHES.exists():
+        return ("iiwa14 (package)", *packaged("iiwa14"))
+    return "iiwa14 (meshes)", cs.Robot.from_urdf(IIWA14_MESHES), pin.buildModelFromUrdf(str(IIWA14_MESHES))
+
+
+def panda() -> tuple[str, cs.Robot, Any]:
+    """The Panda of example-robot-data, its fingers too.
+
+    Raises:
+        FileNotFoundError: example-robot-data is not installed.
+    """
+    if not PANDA.exists():
+        raise FileNotFoundError(f"{PANDA} is absent: install example-robot-data")
+    robot = cs.Robot.from_urdf(PANDA, package_dirs=EXAMPLE_SHARE)
+    return "panda", robot, pin.buildModelFromUrdf(str(PANDA))
 
 
 def random_posture(model: Any, rng: np.random.Generator) -> FloatArray:

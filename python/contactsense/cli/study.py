@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -115,12 +117,62 @@ def vorndamme2017(
     png: Annotated[Path | None, typer.Option(help="Folder to write pictures to.")] = None,
 ) -> None:
     """One, two and five contacts at once on Atlas, with joint torques and with force/torque sensors."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-
     from ..studies.vorndamme2017 import data, report, study
 
     options = study.Options(singles, pairs, fives, hits, seed, noise, math.radians(cone), random_poses)
-    save = _picture_writer() if png is not None else None
+    save = _picture_writer("vorndamme2017") if png is not None else None
+    with _progress() as show:
+        result = study.run(options, processes=processes, progress=show)
+    if as_json:
+        print(json.dumps(data.as_data(result), indent=2, allow_nan=False))
+    else:
+        report.print_study(result, Console())
+    _save_pictures(save, result, png, as_json)
+
+
+@app.command("bimbo2019")
+def bimbo2019(
+    robot: Annotated[str, typer.Option(help="A packaged arm, or a URDF file.")] = "iiwa14",
+    package_dir: Annotated[
+        list[Path] | None, typer.Option(help="Folder for `package://` names; may be repeated.")
+    ] = None,
+    link: Annotated[
+        list[str] | None, typer.Option(help="Link to touch; may be repeated (default: all that move).")
+    ] = None,
+    experiment: Annotated[
+        list[str] | None,
+        typer.Option(help="random, deliberate, cube, 'smooth pole', pole; may be repeated (default: all)."),
+    ] = None,
+    trials: Annotated[int, typer.Option(help="A link, in every experiment.")] = 5,
+    particles: Annotated[int, typer.Option(help="Of every filter.")] = 10_000,
+    seed: Annotated[int, typer.Option(help="Of poses, points, motions, noise and filters.")] = 0,
+    processes: Annotated[
+        int | None, typer.Option(min=1, help="How many; the answer is the same (default: one a core).")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print all results as JSON.")] = False,
+    png: Annotated[Path | None, typer.Option(help="Folder to write pictures to.")] = None,
+) -> None:
+    """Where an arm is touched, found by a particle filter while it moves a little: three motion models."""
+    from ..studies.bimbo2019 import data, report, study
+    from ..studies.bimbo2019.options import Options
+
+    folders = tuple(str(folder) for folder in package_dir or ())
+    options = Options(robot, folders, trials, particles, seed, tuple(link or ()), tuple(experiment or ()))
+    save = _picture_writer("bimbo2019") if png is not None else None
+    with _progress() as show:
+        result = study.run(options, processes=processes, progress=show)
+    if as_json:
+        print(json.dumps(data.as_data(result), indent=2, allow_nan=False))
+    else:
+        report.print_study(result, Console())
+    _save_pictures(save, result, png, as_json)
+
+
+@contextmanager
+def _progress() -> Iterator[Callable[[str, int, int], None]]:
+    """A bar for every stage, on standard error."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         stages: dict[str, TaskID] = {}
@@ -130,20 +182,23 @@ def vorndamme2017(
                 stages[stage] = bar.add_task(stage, total=total)
             bar.update(stages[stage], completed=done)
 
-        result = study.run(options, processes=processes, progress=show)
-    if as_json:
-        print(json.dumps(data.as_data(result), indent=2, allow_nan=False))
-    else:
-        report.print_study(result, Console())
-    if save is not None and png is not None:
-        for path in save(result, png):
-            if not as_json:
+        yield show
+
+
+def _save_pictures(
+    save: Callable[[Any, Path], list[Path]] | None, result: Any, folder: Path | None, quiet: bool
+) -> None:
+    if save is not None and folder is not None:
+        for path in save(result, folder):
+            if not quiet:
                 print(f"Picture: {path}")
 
 
-def _picture_writer() -> Callable[[Any, Path], list[Path]]:
+def _picture_writer(study: str) -> Callable[[Any, Path], list[Path]]:
+    """Found before the study begins, so that a missing package is told at once."""
     try:
-        from ..studies.vorndamme2017.plots import save_plots
+        plots = import_module(f"contactsense.studies.{study}.plots")
     except ModuleNotFoundError as missing:
         raise MissingExtraError(missing.name or "matplotlib", "study") from missing
-    return save_plots
+    save: Callable[[Any, Path], list[Path]] = plots.save_plots
+    return save

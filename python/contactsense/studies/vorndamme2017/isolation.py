@@ -10,11 +10,12 @@ from typing import Literal
 import numpy as np
 
 from ... import ContactIsolator, ForceTorqueSensor, Robot
+from ..parallel import each
 from .information import rank_deficit
 from .instruments import Method, observed, sensor_links
 from .judge import Verdict, judge, judge_answers
-from .parallel import each, shared_robot
 from .pseudoinverse import isolate as isolate_by_pseudoinverse
+from .robot import shared_robot
 from .scenes import Scene
 
 CHUNK = 100

@@ -9,12 +9,13 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 
 from ... import InputError, Robot
+from ..parallel import each
 from ..sampling import CONE
 from .hits import ideal_series, scaled, simulated_series
 from .instruments import METHODS, Method, external_torque, external_wrenches
 from .isolation import THRESHOLD, Setting, Task, run_tasks
 from .judge import Verdict
-from .parallel import ROBOT, each, shared_robot
+from .robot import ROBOT, shared_robot
 from .scenes import Scene, fives, pairs, singles
 from .time_series import Series
 from .timing import Timing, measure

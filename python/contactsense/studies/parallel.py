@@ -5,13 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from functools import lru_cache
 from multiprocessing import get_context
 from typing import TypeVar
-
-from ... import Robot
-
-ROBOT = "atlas"
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -37,9 +32,3 @@ def each(
         for item, result in zip(items, pool.map(function, items), strict=True):
             done(item)
             yield result
-
-
-@lru_cache(maxsize=1)
-def shared_robot() -> Robot:
-    """The study's robot, loaded once a process."""
-    return Robot.named(ROBOT)

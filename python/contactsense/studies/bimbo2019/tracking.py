@@ -1,0 +1,49 @@
+"""A filter that follows a recorded run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ... import ContactParticleFilter
+from ...sim import TorqueNoise
+from .arm import Arm
+from .experiments import Filter
+from .metric import Outcome, judge, point_error
+from .options import Options
+
+
+def make_filter(arm: Arm, kind: Filter, options: Options, seed: int) -> ContactParticleFilter:
+    """The filter, told of the noise."""
+    return ContactParticleFilter(
+        arm.robot,
+        particles=options.particles,
+        motion=kind.motion,
+        likelihood=kind.likelihood,
+        schedule=kind.schedule,
+        torque_noise=kind.torque_noise,
+        relative_noise=max(kind.relative_noise, 0.01 * kind.noise),
+        seed=seed,
+        threads=1,
+    )
+
+
+def track(
+    arm: Arm,
+    run: Any,
+    kind: Filter,
+    options: Options,
+    seed: int,
+    watch: Callable[[int, ContactParticleFilter, Any], None] = lambda row, particles, estimate: None,
+) -> Outcome:
+    """Feeds the run, a sample an update; `watch` is told each row, the filter and its estimate."""
+    particles = make_filter(arm, kind, options, seed)
+    noise = TorqueNoise(percent=kind.noise, seed=seed)
+    errors = []
+    for row, (q, torque) in enumerate(zip(run.q, run.external_torque, strict=True)):
+        estimate = particles.update(q, noise.measure(torque))
+        errors.append(point_error(estimate, run.point[row]))
+        watch(row, particles, estimate)
+    return judge(estimate, run.link[-1], run.point[-1], run.force[-1], tuple(np.round(errors, 6).tolist()))
