@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use contactsense::particle::{ContactParticleFilter, FilterOptions, Likelihood, Motion, Schedule};
+use contactsense::particle::{
+    ContactParticleFilter, FilterOptions, Likelihood, Measurement, Motion, Schedule,
+};
 use contactsense::robot::Robot;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -38,7 +40,8 @@ pub struct Particles {
 /// robot makes small motions in contact survive. Frictionless, one contact, a convex obstacle that stays where it is.
 ///
 /// `particles`: how many, default 10,000. `motion`: "curvature" (eq. 8), or the baselines "fixed_on_link" and
-/// "fixed_in_world". `measurement`: "normal" (frictionless). `links`: names of those to look on, by default all that
+/// "fixed_in_world". `measurement`: "normal" (frictionless) or "friction_cone" with `friction` (default
+/// 0.5): forces across the normal up to so much of it, integrated out. `links`: names of those to look on, by default all that
 /// move and have a surface. `seed`: same seed, same answer, for any number of `threads` (default 1). `force_range` [N],
 /// `stiffness_range` [N/m] and `radius_range` [m] of the obstacle's curvature: least and greatest at the start, default
 /// (1, 100), (3e2, 3e4), (5e-3, 1).
@@ -60,7 +63,7 @@ pub struct PyContactParticleFilter {
 #[pymethods]
 impl PyContactParticleFilter {
     #[new]
-    #[pyo3(signature = (robot, *, particles=None, motion="curvature", measurement="normal", links=None, seed=None,
+    #[pyo3(signature = (robot, *, particles=None, motion="curvature", measurement="normal", friction=None, links=None, seed=None,
         force_range=None, stiffness_range=None, radius_range=None, schedule=None, threads=None,
         likelihood="gaussian", torque_noise=None, relative_noise=None, torque_threshold=None))]
     #[allow(clippy::too_many_arguments)] // named in Python
@@ -69,6 +72,7 @@ impl PyContactParticleFilter {
         particles: Option<&Bound<'_, PyAny>>,
         motion: &str,
         measurement: &str,
+        friction: Option<Number>,
         links: Option<&Bound<'_, PyAny>>,
         seed: Option<&Bound<'_, PyAny>>,
         force_range: Option<&Bound<'_, PyAny>>,
@@ -104,9 +108,11 @@ impl PyContactParticleFilter {
             links: links.map(|links| names("links", "links", links)).transpose()?,
             ..FilterOptions::default()
         };
-        if measurement != "normal" {
-            return Err(unknown(py, "measurement", measurement, "'normal'"));
-        }
+        options.measurement = match measurement {
+            "normal" => Measurement::Normal,
+            "friction_cone" => Measurement::FrictionCone(friction.map_or(0.5, |friction| friction.0)),
+            _ => return Err(unknown(py, "measurement", measurement, "'normal', 'friction_cone'")),
+        };
         if let Some(particles) = particles {
             options.particles = whole("particles", particles, 10_000_000)? as usize;
         }

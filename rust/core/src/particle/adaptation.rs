@@ -47,8 +47,13 @@ impl Adaptation {
             .get(active_joints.saturating_sub(1))
             .map_or(1.0, |updates| updates / (updates + age as f64));
         self.backlog = (self.backlog + news * fade).min(fade);
-        self.sharpest = self.variance.unwrap_or(1.0);
+        self.sharpest = self.noise();
         self.sharpest / self.backlog
+    }
+
+    /// Variance of the torques' error, in units of their noise.
+    pub fn noise(&self) -> f64 {
+        self.variance.unwrap_or(1.0)
     }
 
     /// Counts the present measurement as new.

@@ -73,6 +73,10 @@ columns! {
     gain: f64 = 0.0,
     /// Inner product of that torque with the measured one [1/N].
     product: f64 = 0.0,
+    /// Squared norm of the measured torques that the particle's friction does not explain.
+    measured: f64 = 0.0,
+    /// What the freedom of its friction costs in log-likelihood.
+    penalty: f64 = 0.0,
     /// How far the particle is to be moved at random at its next step, a standard deviation [m].
     spread: f64 = 0.0,
     /// Drawn anew from the whole surface, not copied: never weighed yet.

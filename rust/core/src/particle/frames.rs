@@ -1,6 +1,6 @@
 //! Per step and link: pose, and what a force on it does to the joints, all in the link's frame.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::robot::motion::{motion_axis, split};
 use crate::robot::{Kinematics, Robot, WORLD};
@@ -42,6 +42,25 @@ impl Frame {
             product += torque * screw.torque;
         }
         (gain, product)
+    }
+
+    /// As [`response`](Self::response), of unit forces in three directions: the Gram matrix of their torques, and the
+    /// products with those measured.
+    #[inline]
+    pub fn responses(
+        &self,
+        point: &Vector3<f64>,
+        forces: &[Vector3<f64>; 3],
+    ) -> (Matrix3<f64>, Vector3<f64>) {
+        let moments = forces.map(|force| point.cross(&force));
+        let (mut gram, mut products) = (Matrix3::zeros(), Vector3::zeros());
+        for screw in &self.screws {
+            let torque = |i: usize| screw.linear.dot(&forces[i]) + screw.angular.dot(&moments[i]);
+            let torques = Vector3::new(torque(0), torque(1), torque(2));
+            gram += torques * torques.transpose();
+            products += torques * screw.torque;
+        }
+        (gram, products)
     }
 }
 

@@ -7,8 +7,6 @@ use super::options::Likelihood;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Weighing {
     pub likelihood: Likelihood,
-    /// Squared norm of the measured torques, each over its noise.
-    pub measured: f64,
     /// Variance of the torques' error, in units of their noise.
     pub variance: f64,
     pub stiffness_range: [f64; 2],
@@ -27,7 +25,7 @@ impl Weighing {
     /// Log-likelihood of particle k, as if nothing else had been measured yet; changes nothing.
     #[inline]
     pub fn log_likelihood(&self, belief: &Belief) -> f64 {
-        self.posterior(belief).log_weight
+        self.posterior(belief).log_weight - belief.penalty
     }
 
     /// Weighs all particles and updates what they believe of the force.
@@ -38,9 +36,11 @@ impl Weighing {
                 variance: particles.force_variance[k],
                 gain: particles.gain[k],
                 product: particles.product[k],
+                measured: particles.measured[k],
+                penalty: particles.penalty[k],
             };
             let posterior = self.posterior(&belief);
-            particles.log_weight[k] += posterior.log_weight;
+            particles.log_weight[k] += posterior.log_weight - belief.penalty;
             let change = posterior.force - belief.force;
             if belief.variance > 0.0 && posterior.left < 1.0 {
                 let share = particles.cross_variance[k] / belief.variance;
@@ -66,8 +66,8 @@ impl Weighing {
     /// The force is linear in the torque, so it is integrated out: a scalar Kalman filter in each particle.
     #[inline]
     fn gaussian(&self, belief: &Belief) -> Posterior {
-        let Belief { force, variance, gain, product } = *belief;
-        let gap = Posterior { force, log_weight: -0.5 * self.measured / self.variance, left: 1.0 };
+        let Belief { force, variance, gain, product, measured, .. } = *belief;
+        let gap = Posterior { force, log_weight: -0.5 * measured / self.variance, left: 1.0 };
         if gain <= 0.0 {
             return gap;
         }
@@ -81,7 +81,7 @@ impl Weighing {
             let force = if force > 0.0 { 0.0 } else { force };
             return Posterior { force, log_weight: gap.log_weight - 0.5 * ended, ..gap };
         }
-        let squared = (self.measured - force * (2.0 * product - force * gain)).max(0.0) / self.variance;
+        let squared = (measured - force * (2.0 * product - force * gain)).max(0.0) / self.variance;
         let explained = slope * slope * variance * left;
         Posterior { force: found, log_weight: -0.5 * (squared - explained - left.ln()), left }
     }
@@ -90,7 +90,7 @@ impl Weighing {
     #[inline]
     fn exponential(&self, belief: &Belief) -> Posterior {
         let force = belief.force.max(0.0);
-        let squared = self.measured - force * (2.0 * belief.product - force * belief.gain);
+        let squared = belief.measured - force * (2.0 * belief.product - force * belief.gain);
         Posterior { force: belief.force, log_weight: -(squared.max(0.0) / self.variance).sqrt(), left: 1.0 }
     }
 }
@@ -102,6 +102,8 @@ pub(super) struct Belief {
     pub variance: f64,
     pub gain: f64,
     pub product: f64,
+    pub measured: f64,
+    pub penalty: f64,
 }
 
 impl Belief {
@@ -112,12 +114,14 @@ impl Belief {
             variance: particles.force_variance[k],
             gain: particles.gain[k],
             product: particles.product[k],
+            measured: particles.measured[k],
+            penalty: particles.penalty[k],
         }
     }
 }
 
 /// Squared norm of the torque that a belief leaves over, in units of the noise.
-pub(super) fn misfit(measured: f64, belief: &Belief) -> f64 {
+pub(super) fn misfit(belief: &Belief) -> f64 {
     let force = belief.force.max(0.0);
-    (measured - force * (2.0 * belief.product - force * belief.gain)).max(0.0)
+    (belief.measured - force * (2.0 * belief.product - force * belief.gain)).max(0.0)
 }

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::birth::Births;
 use super::columns::Slice;
 use super::frames::Frames;
+use super::measurement::Measuring;
 use super::options::Motion;
 use super::schedule::Noise;
 use crate::random::Stream;
@@ -22,6 +23,7 @@ pub(super) struct Move {
     pub motion: Motion,
     /// Logarithms of the least and the greatest radius.
     pub log_radius: [f64; 2],
+    pub measuring: Measuring,
     pub noise: Noise,
     /// Standard deviation of the force of particles that are not tied to an obstacle [N].
     pub loose_force: f64,
@@ -51,14 +53,14 @@ impl Move {
                 Motion::FixedOnLink => particles.force_variance[k] += self.loose_force.powi(2),
                 Motion::FixedInWorld => self.stay_in_world(surface, frames, particles, k),
             }
-            let frame = &frames.links[particles.link[k] as usize];
-            let (gain, product) = frame.response(&particles.point[k], &particles.normal[k]);
-            particles.gain[k] = gain;
-            particles.product[k] = product;
             if particles.fresh[k] {
                 particles.fresh[k] = false;
-                (particles.force[k], particles.force_variance[k]) = births.force(gain, product);
+                // First without friction, whose limit is the force's.
+                particles.force[k] = 0.0;
+                let bare = self.measuring.apply(frames, particles, k);
+                (particles.force[k], particles.force_variance[k]) = births.force(bare.gain, bare.product);
             }
+            self.measuring.apply(frames, particles, k);
             if self.sampled {
                 self.draw(number, particles, k);
             }

@@ -2,6 +2,7 @@
 
 use std::ops::RangeInclusive;
 
+use super::measurement::Measurement;
 use super::schedule::Schedule;
 use crate::error::{Error, Result};
 use crate::robot::{Robot, WORLD};
@@ -35,6 +36,8 @@ pub struct FilterOptions {
     pub particles: usize,
     /// How contacts move.
     pub motion: Motion,
+    /// Which forces a contact can exert.
+    pub measurement: Measurement,
     /// How errors of torque are weighed.
     pub likelihood: Likelihood,
     /// Names of the links to look on; all that move and have a surface by default.
@@ -64,6 +67,7 @@ impl Default for FilterOptions {
         FilterOptions {
             particles: 10_000,
             motion: Motion::default(),
+            measurement: Measurement::default(),
             likelihood: Likelihood::default(),
             links: None,
             seed: 0,
@@ -96,6 +100,13 @@ impl FilterOptions {
                 "relative_noise: must be zero or a positive number, got {}",
                 self.relative_noise
             )));
+        }
+        if let Measurement::FrictionCone(friction) = self.measurement {
+            if !(friction.is_finite() && friction >= 0.0) {
+                return Err(Error::Input(format!(
+                    "friction: must be zero or a positive number, got {friction}"
+                )));
+            }
         }
         self.schedule.check()?;
         let moving = |&index: &usize| robot.links()[index].body != WORLD;

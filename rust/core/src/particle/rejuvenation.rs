@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::columns::Slice;
 use super::frames::Frames;
+use super::measurement::{across, Measuring};
 use super::motion::{place, signed};
 use super::options::Motion;
 use crate::random::Stream;
@@ -16,6 +17,7 @@ const DRAWS: u64 = 4;
 #[derive(Debug, Clone)]
 pub(super) struct Rejuvenation {
     pub motion: Motion,
+    pub measuring: Measuring,
     /// Whether force and stiffness go along, so that the torque stays.
     pub keep_torque: bool,
     pub stiffness_range: [f64; 2],
@@ -35,8 +37,8 @@ impl Rejuvenation {
             }
             particles.spread[k] = 0.0;
             let frame = &frames.links[particles.link[k] as usize];
-            let [along, across] = self.random.normals((start + k) as u64 * DRAWS);
-            let aside = tangent(&particles.normal[k], along * spread, across * spread);
+            let [along, beside] = self.random.normals((start + k) as u64 * DRAWS);
+            let aside = tangent(&particles.normal[k], along * spread, beside * spread);
             if self.motion == Motion::Curvature {
                 let local = frame.pose.inverse_transform_point(&particles.centre[k]) + aside;
                 let near = surface.closest_point_near(&local, particles.triangle[k]);
@@ -51,8 +53,9 @@ impl Rejuvenation {
             if particles.fresh[k] || !self.keep_torque {
                 continue;
             }
-            let (gain, product) = frame.response(&particles.point[k], &particles.normal[k]);
-            let scale = (product * particles.gain[k]) / (gain * particles.product[k]);
+            let (gain, product) = (particles.gain[k], particles.product[k]);
+            let here = self.measuring.apply(frames, particles, k);
+            let scale = (here.product * gain) / (here.gain * product);
             if scale > 0.0 && particles.force[k] * scale < self.most_force {
                 let [low, high] = self.stiffness_range;
                 particles.force[k] *= scale;
@@ -61,15 +64,12 @@ impl Rejuvenation {
                 particles.cross_variance[k] *= scale * scale;
                 particles.stiffness_variance[k] *= scale * scale;
             }
-            particles.gain[k] = gain;
-            particles.product[k] = product;
         }
     }
 }
 
 /// A vector across `normal`.
-fn tangent(normal: &Vector3<f64>, along: f64, across: f64) -> Vector3<f64> {
-    let apart = if normal.x.abs() < 0.8 { Vector3::x() } else { Vector3::y() };
-    let first = normal.cross(&apart).normalize();
-    first * along + normal.cross(&first) * across
+fn tangent(normal: &Vector3<f64>, along: f64, beside: f64) -> Vector3<f64> {
+    let first = across(normal);
+    first * along + normal.cross(&first) * beside
 }

@@ -8,6 +8,7 @@ use super::columns::{Columns, Slice};
 use super::estimate::{ContactEstimate, Event};
 use super::frames::Frames;
 use super::likelihood::{misfit, Belief, Weighing};
+use super::measurement::Measuring;
 use super::modes::{Modes, MOST_MODES};
 use super::motion::Move;
 use super::options::{FilterOptions, Likelihood, Motion};
@@ -177,6 +178,10 @@ impl Swarm {
         self.random.fork(8 * self.step + 4 * self.rescued as u64 + purpose as u64)
     }
 
+    fn measuring(&self) -> Measuring {
+        Measuring { measurement: self.options.measurement, variance: self.adaptation.noise() }
+    }
+
     fn threads(&self) -> usize {
         self.options.threads
     }
@@ -212,6 +217,7 @@ impl Swarm {
     pub fn predict(&mut self, noise: &Noise) {
         let motion = Move {
             motion: self.options.motion,
+            measuring: self.measuring(),
             log_radius: self.options.radius_range.map(f64::ln),
             noise: *noise,
             loose_force: self.options.force_range[1],
@@ -231,7 +237,6 @@ impl Swarm {
     pub fn weigh(&mut self, moved: f64, noise: &Noise) -> f64 {
         let mut weighing = Weighing {
             likelihood: self.options.likelihood,
-            measured: self.frames.measured,
             variance: 1.0,
             stiffness_range: self.options.stiffness_range,
         };
@@ -286,7 +291,7 @@ impl Swarm {
             }
         }
         let measured = self.frames.measured;
-        let misfit = misfit(measured, &Belief::of(&self.particles, best));
+        let misfit = misfit(&Belief::of(&self.particles, best));
         let share = if measured > 0.0 { (misfit / measured).sqrt() } else { 0.0 };
         Left { misfit, share, joints: self.torque.len() }
     }
@@ -339,6 +344,7 @@ impl Swarm {
     fn rejuvenate(&mut self) {
         let apart = Rejuvenation {
             motion: self.options.motion,
+            measuring: self.measuring(),
             keep_torque: self.options.likelihood == Likelihood::Gaussian,
             stiffness_range: self.options.stiffness_range,
             most_force: self.options.force_range[1],
