@@ -80,8 +80,8 @@ impl PyContactEstimate {
         self.estimate.contact
     }
 
-    /// "none", "started", "continued", "lost", "changed" (nothing explained the torque any more: the search began anew)
-    /// or "jumped" (the pose did: likewise).
+    /// "none", "started", "continued", "lost", "changed" (the contact is elsewhere than it was held to be) or
+    /// "jumped" (the pose did, so the search began anew).
     #[getter]
     fn event(&self) -> &str {
         self.estimate.event.name()

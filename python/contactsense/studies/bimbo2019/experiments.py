@@ -14,16 +14,14 @@ Setup: TypeAlias = Literal["random", "deliberate", "null space"]
 
 @dataclass(frozen=True)
 class Filter:
-    """A filter, and the noise of the torques it is fed."""
+    """A filter, and the noise of the torques it is fed, of which it is not told."""
 
     name: str
     motion: MotionModel = "curvature"
     likelihood: Likelihood = "gaussian"
     noise: float = 0.0  # [%] of each external torque, standard deviation
     schedule: Literal["adaptive", "paper"] = "adaptive"
-    # What the filter is told of its torques, beyond the noise above.
-    torque_noise: float = 0.02  # [Nm]
-    relative_noise: float = 0.01
+    measurement: Literal["normal", "friction_cone"] = "normal"
 
 
 @dataclass(frozen=True)
@@ -42,8 +40,7 @@ CURVATURE = Filter("curvature")
 MODELS = (CURVATURE, Filter("on link", "fixed_on_link"), Filter("in world", "fixed_in_world"))
 PRINTED = Filter("printed", likelihood="exponential", schedule="paper")
 NOISES = (CURVATURE, Filter("5 % noise", noise=5.0), Filter("10 % noise", noise=10.0))
-# Friction turns a force away from the normal: torques that follow from the normal are off by such a share.
-RUBBING = Filter("curvature", relative_noise=0.1)
+RUBBING = Filter("friction cone", measurement="friction_cone")
 SPHERE = (*MODELS, PRINTED, *NOISES[1:])
 
 EXPERIMENTS = (
@@ -51,6 +48,6 @@ EXPERIMENTS = (
     Experiment("deliberate", "deliberate", "sphere", SPHERE),
     Experiment("cube", "random", "cube", (CURVATURE,)),
     Experiment("smooth pole", "null space", "cylinder", (CURVATURE,)),
-    Experiment("pole", "null space", "cylinder", (RUBBING,), friction=0.2, model_error=0.05),
+    Experiment("pole", "null space", "cylinder", (CURVATURE, RUBBING), friction=0.2, model_error=0.05),
 )
 BY_NAME = {experiment.name: experiment for experiment in EXPERIMENTS}

@@ -16,15 +16,14 @@ from .options import Options
 
 
 def make_filter(arm: Arm, kind: Filter, options: Options, seed: int) -> ContactParticleFilter:
-    """The filter, told of the noise."""
+    """The filter, with its defaults."""
     return ContactParticleFilter(
         arm.robot,
         particles=options.particles,
         motion=kind.motion,
         likelihood=kind.likelihood,
         schedule=kind.schedule,
-        torque_noise=kind.torque_noise,
-        relative_noise=max(kind.relative_noise, 0.01 * kind.noise),
+        measurement=kind.measurement,
         seed=seed,
         threads=1,
     )

@@ -17,7 +17,7 @@ pub enum Event {
     Continued,
     /// The contact ended.
     Lost,
-    /// No particle explained the torque for some updates: they were spread anew.
+    /// The contact is elsewhere than it was held to be, or no particle explained the torque for some updates.
     Changed,
     /// The robot jumped: what was known no longer holds, the particles were spread anew.
     Jumped,

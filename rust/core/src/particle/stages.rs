@@ -50,7 +50,7 @@ impl Stages {
 
     /// Finds the modes and says the estimate.
     pub fn estimate(&mut self) {
-        self.0.conclude(crate::particle::Event::Continued, 1.0);
+        self.0.conclude(crate::particle::Event::Continued, 1.0, 0.0);
     }
 
     /// The particles.

@@ -141,7 +141,7 @@ impl Swarm {
         if self.felt && self.age > 0 && noise.sharpness.is_none() && self.left_over().is_much(RESCUE) {
             (effective, event) = self.rescue(&noise, moved, event);
         }
-        let left = self.conclude(event, effective);
+        let left = self.conclude(event, effective, moved);
         if effective < RESAMPLE * self.particles.len() as f64 {
             self.resample(&noise, moved, Adaptation::fresh_share(left.share));
         }
@@ -166,11 +166,11 @@ impl Swarm {
     }
 
     /// Says what the weighted particles show.
-    pub fn conclude(&mut self, event: Event, effective: f64) -> Left {
+    pub fn conclude(&mut self, event: Event, effective: f64, moved: f64) -> Left {
         self.modes.find(&self.robot, &self.frames, &self.particles, &self.weights);
         let left = self.left_over();
         self.adaptation.learn(left.misfit, self.active_joints());
-        self.tell(event, effective, &left);
+        self.tell(event, effective, moved, &left);
         left
     }
 
@@ -296,11 +296,13 @@ impl Swarm {
         Left { misfit, share, joints: self.torque.len() }
     }
 
-    fn tell(&mut self, event: Event, effective: f64, left: &Left) {
+    fn tell(&mut self, event: Event, effective: f64, moved: f64, left: &Left) {
         let explained = !left.is_much(UNEXPLAINED);
         self.unexplained = if explained { 0 } else { self.unexplained + 1 };
         let norm = self.torque.iter().map(|torque| torque * torque).sum::<f64>().sqrt();
         let Self { estimate, modes, frames, .. } = self;
+        let sure = (estimate.contact && !estimate.ambiguous)
+            .then(|| (estimate.point, MOVED_ON + 3.0 * estimate.covariance.trace().sqrt()));
         estimate.clear();
         estimate.event = event;
         estimate.effective_samples = effective;
@@ -309,6 +311,11 @@ impl Swarm {
         if self.felt {
             let springy = self.options.motion == Motion::Curvature;
             estimate.set_contact(modes, frames, springy);
+            if let (Event::Continued, Some((before, reach))) = (event, sure) {
+                if (estimate.point - before).norm() > reach + moved {
+                    estimate.event = Event::Changed;
+                }
+            }
         }
     }
 
@@ -378,5 +385,7 @@ const UNEXPLAINED: f64 = 0.5;
 /// Above this one the contact is looked for on the whole surface, by a share of the particles.
 const RESCUE: f64 = 0.3;
 const RESCUERS: f64 = 0.5;
+/// A point that was sure and is farther off now, beyond its spread and the robot's motion, is another contact [m].
+const MOVED_ON: f64 = 0.05;
 /// Share of the robot's motion that a contact held to be fixed moves.
 const SLIP: f64 = 0.5;

@@ -1,0 +1,400 @@
+"""The particle filter on runs in closed form: what it finds, what it says of itself, and what it refuses."""
+
+from __future__ import annotations
+
+import threading
+import time
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from robots import IIWA14
+
+import contactsense as cs
+from contactsense import sim
+
+CHI2_90 = 6.25  # three degrees of freedom
+MESHED = IIWA14.path if IIWA14.path.exists() else None
+
+
+@cache
+def arm() -> tuple[cs.Robot, Any]:
+    """iiwa14: with its meshes where they are, otherwise of simple solids."""
+    if MESHED is not None:
+        return cs.Robot.from_urdf(MESHED), sim.model_from_urdf(MESHED)
+    return cs.Robot.named("iiwa14"), sim.named_model("iiwa14")
+
+
+@cache
+def explored(link: int, seed: int, kind: str = "sphere") -> sim.ContactRun:
+    """Forty motions of two degrees, three samples each."""
+    robot, model = arm()
+    name = f"iiwa_link_{link}"
+    for chance in range(seed, seed + 500, 50):
+        try:
+            scene = sim.touch_scene(
+                robot, model, name, kind=kind, stiffness_range=(1e3, 1e4), least_torque=1.0, seed=chance
+            )
+            path = sim.joint_exploration(robot, scene, pace=sim.Pace(motions=40, duration=0.25), seed=chance)
+        except cs.InputError:
+            continue
+        rows = slice(None, None, 4)
+        return sim.record_quasi_static(robot, scene.contact(robot), path.time[rows], path.q[rows])
+    raise AssertionError(f"no scene on {name}")
+
+
+def follow(run: sim.ContactRun, noise: float = 0.0, **options: Any) -> cs.ContactEstimate:
+    generator = np.random.default_rng(3)
+    tracker = cs.ContactParticleFilter(arm()[0], **options)
+    for q, torque in zip(run.q, run.external_torque, strict=True):
+        estimate = tracker.update(q, torque * (1.0 + noise * generator.standard_normal(torque.size)))
+    return estimate
+
+
+def error(estimate: cs.ContactEstimate, run: sim.ContactRun) -> float:
+    return float(np.linalg.norm(estimate.point - run.point[-1]))
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.1])
+@pytest.mark.parametrize("link", [3, 4, 5, 6, 7])
+def test_a_ball_is_found(link: int, noise: float) -> None:
+    runs = [explored(link, seed) for seed in (41, 42, 43)]
+    estimates = [follow(run, noise) for run in runs]
+    errors = [error(*pair) for pair in zip(estimates, runs, strict=True)]
+    assert [estimate.link for estimate in estimates] == [run.link[-1] for run in runs]
+    assert np.mean(errors) < (0.015 if link > 3 else 0.04), errors
+    for estimate, run in zip(estimates, runs, strict=True):
+        force = run.force[-1]
+        assert np.linalg.norm(estimate.force - force) < (0.1 + 2 * noise) * np.linalg.norm(force)
+        assert estimate.contact
+        assert estimate.explained
+        assert estimate.event == "continued"
+
+
+def test_the_obstacles_stiffness_is_found() -> None:
+    run = explored(5, 41)
+    estimate = follow(run)
+    assert estimate.stiffness == pytest.approx(run.settings["stiffness"], rel=0.1)
+
+
+@pytest.mark.parametrize("kind", ["cube", "cylinder"])
+def test_edges_and_poles_are_found_on_the_outer_links(kind: str) -> None:
+    runs = [explored(link, seed, kind) for link in (4, 5, 6, 7) for seed in (61, 62)]
+    estimates = [follow(run) for run in runs]
+    errors = [error(*pair) for pair in zip(estimates, runs, strict=True)]
+    assert np.mean(errors) < 0.03, errors
+    for estimate, run in zip(estimates, runs, strict=True):
+        assert estimate.link == run.link[-1] or estimate.ambiguous
+
+
+def test_near_the_base_the_covariance_says_how_little_is_known() -> None:
+    runs = [explored(link, seed) for link in (1, 2) for seed in range(41, 46)]
+    inside = 0
+    for run in runs:
+        estimate = follow(run)
+        apart = estimate.point - run.point[-1]
+        inside += apart @ np.linalg.solve(estimate.covariance, apart) < CHI2_90
+    assert inside >= 8
+
+
+def test_baselines_are_worse_near_the_base() -> None:
+    runs = [explored(link, seed) for link in (2, 3, 4) for seed in (41, 42, 43)]
+    means = {
+        motion: np.mean([error(follow(run, motion=motion), run) for run in runs])
+        for motion in ("curvature", "fixed_on_link", "fixed_in_world")
+    }
+    assert means["curvature"] < 0.5 * means["fixed_on_link"]
+    assert means["curvature"] < 0.5 * means["fixed_in_world"]
+    assert follow(runs[0], motion="fixed_on_link").stiffness is None
+
+
+def test_the_papers_likelihood_and_schedule_find_the_outer_links() -> None:
+    run = explored(4, 41)
+    assert error(follow(run, likelihood="exponential", schedule="paper"), run) < 0.015
+    assert error(follow(run, schedule={"sharpness": (1, 10), "updates": 30}), run) < 0.03
+
+
+def test_friction_is_told_from_the_normal_force() -> None:
+    robot, model = arm()
+    scene = sim.touch_scene(robot, model, "iiwa_link_6", seed=4)
+    path = sim.joint_exploration(robot, scene, pace=sim.Pace(motions=40, duration=0.25), seed=4)
+    run = sim.record_quasi_static(robot, scene.contact(robot), path.time[::4], path.q[::4])
+    sideways = np.cross(run.normal, [0.3, -0.5, 0.8])
+    sideways *= 0.2 * np.linalg.norm(run.force, axis=1)[:, None] / np.linalg.norm(sideways, axis=1)[:, None]
+    torque = run.external_torque + np.array(
+        [
+            robot.jacobian(q, "iiwa_link_6", point)[:3].T @ force
+            for q, point, force in zip(run.q, run.point, sideways, strict=True)
+        ]
+    )
+    found = {}
+    for measurement in ("normal", "friction_cone"):
+        tracker = cs.ContactParticleFilter(robot, measurement=measurement)
+        for q, tau in zip(run.q, torque, strict=True):
+            estimate = tracker.update(q, tau)
+        found[measurement] = float(np.linalg.norm(estimate.point - run.point[-1]))
+    assert found["friction_cone"] < 0.02
+    assert found["friction_cone"] < found["normal"]
+
+
+def test_the_first_particles_are_uniform_by_area_and_log_uniform_in_stiffness() -> None:
+    robot, _ = arm()
+    run = explored(5, 41)
+    tracker = cs.ContactParticleFilter(robot, particles=20_000, schedule={"sharpness": 1e-6})
+    tracker.update(run.q[0], run.external_torque[0])
+    particles = tracker.particles
+    names = [robot.link_names[index] for index in range(len(robot.link_names))]
+    assert names[0] not in tracker.update(run.q[0], run.external_torque[0]).link_probabilities
+    areas = np.array([0.0] + [robot.surface(name).area for name in names[1:]])
+    share = np.bincount(particles.link, minlength=len(names)) / particles.link.size
+    if MESHED is not None:  # a single part a link: all of its area is exposed
+        assert np.abs(share - areas / areas.sum()).max() < 0.03
+    for index in (3, 5):
+        pose = robot.link_pose(run.q[0], names[index])
+        local = (particles.point[particles.link == index] - pose[:3, 3]) @ pose[:3, :3]
+        assert np.abs(robot.surface(names[index]).closest_points(local).distances).max() < 1e-9
+    logs = np.log10(particles.stiffness / 3e2) / 2.0  # two decades
+    assert np.abs(np.quantile(logs, [0.25, 0.5, 0.75]) - [0.25, 0.5, 0.75]).max() < 0.06
+    assert particles.weight.sum() == pytest.approx(1.0)
+    assert np.abs(np.linalg.norm(particles.normal, axis=1) - 1.0).max() < 1e-9
+
+
+def test_the_same_seed_gives_the_same_particles_on_any_number_of_threads() -> None:
+    run = explored(4, 41)
+    columns = []
+    for threads in (1, 2, 4):
+        tracker = cs.ContactParticleFilter(arm()[0], particles=3000, seed=5, threads=threads)
+        for q, torque in zip(run.q[:15], run.external_torque[:15], strict=True):
+            tracker.update(q, torque)
+        particles = tracker.particles
+        columns.append(
+            [getattr(particles, name) for name in ("link", "point", "normal", "force", "stiffness", "weight")]
+        )
+    for other in columns[1:]:
+        assert all(np.array_equal(a, b) for a, b in zip(columns[0], other, strict=True))
+    fresh = cs.ContactParticleFilter(arm()[0], particles=3000, seed=6)
+    fresh.update(run.q[0], run.external_torque[0])
+    assert not np.array_equal(fresh.particles.point, columns[0][1])
+
+
+def test_reset_begins_anew() -> None:
+    run = explored(4, 41)
+    tracker = cs.ContactParticleFilter(arm()[0], particles=2000)
+    first = [tracker.update(q, tau).point for q, tau in zip(run.q[:5], run.external_torque, strict=False)]
+    tracker.reset()
+    again = [tracker.update(q, tau).point for q, tau in zip(run.q[:5], run.external_torque, strict=False)]
+    assert np.array_equal(first, again)
+
+
+def test_other_threads_run_during_an_update() -> None:
+    run = explored(4, 41)
+    tracker = cs.ContactParticleFilter(arm()[0], particles=400_000)
+    count, done = [0], threading.Event()
+
+    def spin() -> None:
+        while not done.is_set():
+            count[0] += 1
+            time.sleep(0)
+
+    thread = threading.Thread(target=spin)
+    thread.start()
+    tracker.update(run.q[0], run.external_torque[0])
+    before = count[0]
+    tracker.update(run.q[1], run.external_torque[1])
+    during = count[0] - before
+    done.set()
+    thread.join()
+    # With the GIL held the other thread would get one turn of 5 ms at most.
+    assert during > 1000
+
+
+def test_loss_and_return_of_a_contact_are_noticed() -> None:
+    run = explored(5, 42)
+    tracker = cs.ContactParticleFilter(arm()[0])
+    nothing = np.zeros(7)
+    q = run.q[0]
+    still = tracker.update(q, nothing)
+    assert (still.event, still.contact, still.link, still.modes) == ("none", False, "", ())
+    assert np.isnan(still.point).all()
+    assert np.isnan(still.covariance).all()
+    assert still.stiffness is None
+    assert tracker.update(q, run.external_torque[0]).event == "started"
+    assert tracker.update(run.q[1], run.external_torque[1]).event == "continued"
+    assert tracker.update(run.q[2], nothing).event == "lost"
+    assert tracker.update(run.q[2], nothing).event == "none"
+    for q, torque in zip(run.q, run.external_torque, strict=True):
+        estimate = tracker.update(q, torque)
+    assert estimate.link == run.link[-1]
+    assert error(estimate, run) < 0.015
+
+
+def test_a_contact_that_moves_elsewhere_is_found_again() -> None:
+    first = explored(4, 41)
+    robot, model = arm()
+    tracker = cs.ContactParticleFilter(robot)
+    for q, torque in zip(first.q, first.external_torque, strict=True):
+        tracker.update(q, torque)
+    # The same posture, another obstacle: no jump tells it.
+    scene = sim.touch_scene(
+        robot, model, "iiwa_link_6", q=first.q[-1], stiffness_range=(1e3, 1e4), least_torque=1.0, seed=3
+    )
+    path = sim.joint_exploration(robot, scene, pace=sim.Pace(motions=40, duration=0.25), seed=3)
+    then = sim.record_quasi_static(robot, scene.contact(robot), path.time[::4], path.q[::4])
+    events = []
+    for q, torque in zip(then.q, then.external_torque, strict=True):
+        estimate = tracker.update(q, torque)
+        events.append(estimate.event)
+    assert "changed" in events[:10]
+    assert estimate.link == "iiwa_link_6"
+    assert error(estimate, then) < 0.015
+    # A jump of the pose is no motion to learn from.
+    assert tracker.update(first.q[0] + 1.0, first.external_torque[0]).event == "jumped"
+
+
+def test_a_torque_that_nothing_explains_is_said_to_be_so() -> None:
+    robot, _ = arm()
+    tracker = cs.ContactParticleFilter(robot, particles=3000, links=["iiwa_link_2"])
+    # The wrist alone: no contact on link 2 does that.
+    torque = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 8.0, 5.0])
+    q = robot.neutral() + 0.3
+    for _ in range(8):
+        estimate = tracker.update(q, torque)
+    assert estimate.contact
+    assert not estimate.explained
+    assert estimate.ambiguous
+    assert estimate.residual > 0.5 * np.linalg.norm(torque)
+    assert np.isfinite(estimate.point).all()
+    assert set(estimate.link_probabilities) == {"iiwa_link_2"}
+
+
+def test_one_particle_will_do() -> None:
+    run = explored(5, 41)
+    tracker = cs.ContactParticleFilter(arm()[0], particles=1)
+    for q, torque in zip(run.q[:10], run.external_torque, strict=False):
+        estimate = tracker.update(q, torque)
+    assert np.isfinite(estimate.point).all()
+    assert sum(estimate.link_probabilities.values()) == pytest.approx(1.0)
+    assert tracker.particles.weight.tolist() == [1.0]
+
+
+def test_an_arm_that_holds_still_learns_a_measurement_once() -> None:
+    run = explored(3, 41)
+    tracker = cs.ContactParticleFilter(arm()[0])
+    spreads = [
+        float(np.sqrt(np.trace(tracker.update(run.q[0], run.external_torque[0]).covariance)))
+        for _ in range(100)
+    ]
+    apart = tracker.update(run.q[0], run.external_torque[0]).point - run.point[0]
+    assert spreads[-1] < spreads[0]
+    assert np.linalg.norm(apart) < 3.0 * spreads[-1]
+
+
+@pytest.mark.parametrize(
+    ("options", "name"),
+    [
+        ({"particles": 0}, "particles"),
+        ({"particles": -3}, "particles"),
+        ({"particles": 2.5}, "particles"),
+        ({"particles": 10**12}, "particles"),
+        ({"motion": "rolling"}, "motion"),
+        ({"measurement": "skin"}, "measurement"),
+        ({"measurement": "friction_cone", "friction": -0.1}, "friction"),
+        ({"measurement": "friction_cone", "friction": np.nan}, "friction"),
+        ({"likelihood": "poisson"}, "likelihood"),
+        ({"links": ["elbow"]}, "links"),
+        ({"links": ["iiwa_link_0"]}, "links"),  # does not move
+        ({"links": []}, "links"),
+        ({"links": "iiwa_link_3"}, "links"),
+        ({"seed": -1}, "seed"),
+        ({"threads": 0}, "threads"),
+        ({"force_range": (5, 1)}, "force_range"),
+        ({"force_range": (0, 1)}, "force_range"),
+        ({"force_range": (1, np.inf)}, "force_range"),
+        ({"stiffness_range": (1, 2, 3)}, "stiffness_range"),
+        ({"radius_range": (np.nan, 1)}, "radius_range"),
+        ({"torque_noise": 0.0}, "torque_noise"),
+        ({"torque_noise": [0.1, 0.2]}, "torque_noise"),
+        ({"relative_noise": -1.0}, "relative_noise"),
+        ({"torque_threshold": np.nan}, "torque_threshold"),
+        ({"schedule": "slow"}, "schedule"),
+        ({"schedule": 3}, "schedule"),
+        ({"schedule": {"alpha": 3}}, "schedule"),
+        ({"schedule": {"sharpness": (1, -3)}}, "schedule"),
+        ({"schedule": {"updates": -3}}, "schedule"),
+    ],
+)
+def test_options_are_checked_by_name(options: dict[str, Any], name: str) -> None:
+    with pytest.raises(cs.InputError, match=rf"^{name}\b"):
+        cs.ContactParticleFilter(arm()[0], **options)
+
+
+def test_a_robot_without_surface_is_refused() -> None:
+    pin = pytest.importorskip("pinocchio")
+    model = pin.buildSampleModelManipulator()
+    bare = cs.Robot.from_pinocchio(model, pin.GeometryModel())
+    with pytest.raises(cs.InputError, match="robot: no link that moves has a surface"):
+        cs.ContactParticleFilter(bare)
+
+
+@pytest.mark.parametrize(
+    ("q", "torque", "name"),
+    [
+        (np.zeros(6), np.ones(7), "q"),
+        (np.full(7, np.nan), np.ones(7), "q"),
+        (np.zeros(7), np.ones(6), "tau_ext"),
+        (np.zeros(7), np.array([1, 2, np.nan, 0, 0, 0, 0]), "tau_ext"),
+        (np.zeros(7), np.array([1, 2, np.inf, 0, 0, 0, 0]), "tau_ext"),
+        (np.zeros(7), "torques", "tau_ext"),
+        (None, np.ones(7), "q"),
+    ],
+)
+def test_bad_measurements_leave_the_filter_as_it_was(q: Any, torque: Any, name: str) -> None:
+    run = explored(5, 41)
+    trackers = [cs.ContactParticleFilter(arm()[0], particles=500) for _ in range(2)]
+    for tracker in trackers:
+        tracker.update(run.q[0], run.external_torque[0])
+    with pytest.raises(cs.InputError, match=rf"^{name}\b"):
+        trackers[0].update(q, torque)
+    after = [tracker.update(run.q[1], run.external_torque[1]).point for tracker in trackers]
+    assert np.array_equal(*after)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.data())
+def test_whatever_is_measured_the_answer_is_finite_and_the_weights_sum_to_one(data: st.DataObject) -> None:
+    robot, _ = arm()
+    tracker = cs.ContactParticleFilter(robot, particles=200, seed=data.draw(st.integers(0, 9)))
+    number = st.one_of(st.floats(-300, 300), st.floats(-1e-6, 1e-6), st.sampled_from([0.0, 1e12, -1e50]))
+    for _ in range(data.draw(st.integers(1, 6))):
+        q = data.draw(st.lists(st.floats(-7, 7), min_size=7, max_size=7))
+        estimate = tracker.update(q, data.draw(st.lists(number, min_size=7, max_size=7)))
+        assert tracker.particles.weight.sum() == pytest.approx(1.0)
+        if estimate.contact:
+            assert np.isfinite(estimate.point).all()
+            assert np.isfinite(estimate.force).all()
+            assert np.isfinite(estimate.covariance).all()
+            assert np.linalg.eigvalsh(estimate.covariance).min() > 0.0
+            assert sum(estimate.link_probabilities.values()) == pytest.approx(1.0)
+            assert estimate.modes
+            assert 0.0 <= estimate.modes[0].probability <= 1.0 + 1e-9
+
+
+def test_a_floating_robot_can_be_looked_on() -> None:
+    atlas = cs.Robot.named("atlas")
+    q = atlas.neutral()
+    q[7:] += np.random.default_rng(12).uniform(-0.4, 0.4, atlas.nq - 7)
+    link = "l_lfarm"
+    pose = atlas.link_pose(q, link)
+    sample = atlas.surface(link).sample(1, seed=2)
+    point = pose[:3, :3] @ sample.points[0] + pose[:3, 3]
+    force = -20.0 * pose[:3, :3] @ sample.normals[0]
+    torque = atlas.jacobian(q, link, point)[:3].T @ force
+    tracker = cs.ContactParticleFilter(atlas)
+    for _ in range(20):
+        estimate = tracker.update(q, torque)
+    assert estimate.link == link
+    assert np.linalg.norm(estimate.point - point) < 0.01
+    assert np.linalg.norm(estimate.force - force) < 1.0
