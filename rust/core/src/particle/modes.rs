@@ -37,7 +37,7 @@ pub(super) struct Moments {
     square: Matrix3<f64>,
     normal: Vector3<f64>,
     force: f64,
-    log_stiffness: f64,
+    stiffness: f64,
 }
 
 impl Moments {
@@ -49,7 +49,7 @@ impl Moments {
         self.square += weighted * point.transpose();
         self.normal += particles.normal[k] * weight;
         self.force += weight * particles.force[k].max(0.0);
-        self.log_stiffness += weight * particles.stiffness[k].ln();
+        self.stiffness += weight * particles.stiffness[k];
     }
 
     fn join(&mut self, other: &Moments) {
@@ -58,7 +58,7 @@ impl Moments {
         self.square += other.square;
         self.normal += other.normal;
         self.force += other.force;
-        self.log_stiffness += other.log_stiffness;
+        self.stiffness += other.stiffness;
     }
 
     /// Root of the mean squared distance from the mean [m].
@@ -259,7 +259,7 @@ impl Modes {
             point: pose.transform_point(&point),
             force: normal * (-moments.force / moments.weight),
             normal,
-            stiffness: (moments.log_stiffness / moments.weight).exp(),
+            stiffness: moments.stiffness / moments.weight,
             probability: moments.weight,
             spread,
         }
@@ -291,7 +291,7 @@ impl Modes {
 
 fn cell_of(point: &Vector3<f64>) -> [u64; 3] {
     // 2^15 cells either way are 490 m; farther out they fall together.
-    [0, 1, 2].map(|k| ((point[k] / CELL).floor().clamp(-32_000.0, 32_000.0) + 32_768.0) as u64)
+    [0, 1, 2].map(|k| ((point[k] * (1.0 / CELL)).clamp(-32_000.0, 32_000.0) + 32_768.0) as u64)
 }
 
 fn key(link: u32, [x, y, z]: &[u64; 3]) -> u64 {

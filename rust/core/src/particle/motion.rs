@@ -15,7 +15,7 @@ use crate::surface::{ClosestPoint, Surface};
 /// Random numbers a particle and step uses at most.
 const DRAWS: u64 = 4;
 /// Every so many steps the nearest point is looked for on the whole link, in between next to the last one.
-const REFRESH: u64 = 16;
+const REFRESH: u64 = 32;
 
 /// What a step of motion needs to know.
 #[derive(Debug, Clone)]
@@ -81,7 +81,7 @@ impl Move {
     fn roll(&self, surface: &Surface, frames: &Frames, number: u64, particles: &mut Slice<'_>, k: usize) {
         let frame = &frames.links[particles.link[k] as usize];
         let draw = number * DRAWS;
-        let whole = particles.fresh[k] || (number + self.step).is_multiple_of(REFRESH);
+        let whole = (number + self.step).is_multiple_of(REFRESH);
 
         if self.random.uniform(draw) < self.noise.redraw {
             let [low, high] = self.log_radius;

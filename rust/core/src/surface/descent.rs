@@ -79,11 +79,15 @@ impl Mesh {
                 Feature::Face => {}
                 Feature::Edge(k) => match self.neighbours.across[id][usize::from(k)] {
                     NONE => {}
-                    other => visit(other),
+                    other if self.leads_nearer(&(p - point), id, usize::from(k), other) => visit(other),
+                    _ => {}
                 },
                 Feature::Corner(k) => {
-                    let fan = self.neighbours.fan(self.triangles[id][usize::from(k)]);
-                    fan.iter().filter(|&&other| other as usize != id).for_each(|&other| visit(other));
+                    let corner = self.triangles[id][usize::from(k)];
+                    let fan = self.neighbours.fan(corner);
+                    if fan.iter().any(|&other| self.leads_away(&(p - point), corner, other)) {
+                        fan.iter().filter(|&&other| other as usize != id).for_each(|&other| visit(other));
+                    }
                 }
             }
             match better {
@@ -99,6 +103,26 @@ impl Mesh {
             }
         }
         None
+    }
+
+    /// Whether the triangle across edge `k` of triangle `id` goes towards the query, `apart` from a point of the edge.
+    #[inline]
+    fn leads_nearer(&self, apart: &Vector3<f64>, id: usize, k: usize, other: u32) -> bool {
+        let [a, b] = [k, (k + 1) % 3].map(|corner| self.triangles[id][corner]);
+        let tip = self.triangles[other as usize].into_iter().find(|v| *v != a && *v != b).unwrap_or(a);
+        let [a, b, tip] = [a, b, tip].map(|v| self.vertices[v as usize]);
+        let (edge, side) = (b - a, tip - a);
+        // The part of `side` across the edge.
+        apart.dot(&(side * edge.norm_squared() - edge * side.dot(&edge))) > 0.0
+    }
+
+    /// Whether an edge of a triangle from its vertex `corner` goes towards the query, `apart` from that. What lies between
+    /// two edges that do not, does not either.
+    #[inline]
+    fn leads_away(&self, apart: &Vector3<f64>, corner: u32, triangle: u32) -> bool {
+        let at = self.vertices[corner as usize];
+        let mut ends = self.triangles[triangle as usize].into_iter().filter(|v| *v != corner);
+        ends.any(|end| apart.dot(&(self.vertices[end as usize] - at)) > 0.0)
     }
 
     #[inline]

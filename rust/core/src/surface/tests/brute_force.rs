@@ -66,6 +66,28 @@ fn closest_points() {
 }
 
 #[test]
+fn descent_on_a_convex_surface_ends_at_the_nearest_point_of_all() {
+    let mut random = Random(4);
+    for mesh in [icosphere(3, 0.15), icosphere(1, 0.15), block([-0.1, 0.2, 0.3], [0.4, 0.5, 0.35])] {
+        let (surface, _) = surface(&mesh);
+        for (k, sample) in surface.sample(900, 3).into_iter().enumerate() {
+            let height = [0.001, 0.05, 0.6][k % 3];
+            let p = sample.point + sample.normal * height + random.vector() * (0.01 * (k % 4) as f64);
+            let (near, nearest) =
+                (surface.closest_point_near(&p, sample.triangle), surface.closest_point(&p));
+            if (p - nearest.point).dot(&nearest.normal) > 0.0 {
+                assert!((near.distance - nearest.distance).abs() < 1e-12, "{near:?} {nearest:?}");
+                assert!((near.point - nearest.point).norm() < 1e-6);
+            }
+        }
+        let p = random.vector();
+        for no_triangle in [-1, 1 << 40] {
+            assert_eq!(surface.closest_point_near(&p, no_triangle), surface.closest_point(&p));
+        }
+    }
+}
+
+#[test]
 fn a_triangle_in_all_its_regions() {
     let mut random = Random(2);
     for _ in 0..2000 {
