@@ -18,10 +18,29 @@ pub(super) struct Neighbours {
     /// Where in `fans` each vertex' triangles begin; one entry more than vertices.
     first: Vec<u32>,
     fans: Vec<u32>,
+    faces: Vec<Face>,
+}
+
+/// What tells at once whether a query is above a triangle.
+#[derive(Debug, Clone)]
+struct Face {
+    corner: Vector3<f64>,
+    /// Their products with a query from the corner are its barycentric coordinates.
+    coordinates: [Vector3<f64>; 2],
+}
+
+impl Face {
+    fn new([a, b, c]: [Vector3<f64>; 3]) -> Self {
+        let (ab, ac) = (b - a, c - a);
+        let normal = ab.cross(&ac);
+        let squared = normal.norm_squared();
+        Face { corner: a, coordinates: [ac.cross(&normal) / squared, normal.cross(&ab) / squared] }
+    }
 }
 
 impl Neighbours {
-    pub fn new(vertices: usize, triangles: &[[u32; 3]]) -> Self {
+    pub fn new(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Self {
+        let vertices = points.len();
         let mut first = vec![0u32; vertices + 1];
         triangles.iter().flatten().for_each(|&v| first[v as usize + 1] += 1);
         (0..vertices).for_each(|v| first[v + 1] += first[v]);
@@ -50,7 +69,9 @@ impl Neighbours {
                 })
             })
             .collect();
-        Neighbours { across, first, fans }
+        let faces =
+            triangles.iter().map(|triangle| Face::new(triangle.map(|v| points[v as usize]))).collect();
+        Neighbours { across, first, fans, faces }
     }
 
     fn fan(&self, vertex: u32) -> &[u32] {
@@ -127,6 +148,13 @@ impl Mesh {
 
     #[inline]
     fn on_triangle(&self, p: &Vector3<f64>, id: usize) -> (Vector3<f64>, Feature) {
+        let face = &self.neighbours.faces[id];
+        let apart = p - face.corner;
+        let (u, v) = (face.coordinates[0].dot(&apart), face.coordinates[1].dot(&apart));
+        if u > 0.0 && v > 0.0 && u + v < 1.0 {
+            let normal = &self.normals[id];
+            return (p - normal * normal.dot(&apart), Feature::Face);
+        }
         closest_feature(p, &self.triangles[id].map(|v| self.vertices[v as usize]))
     }
 }

@@ -38,7 +38,7 @@ impl Mesh {
             .collect();
         let (tree, order) = Tree::new(&all);
         let corners = order.iter().map(|&id| all[id as usize]).collect();
-        let neighbours = Neighbours::new(vertices.len(), &triangles);
+        let neighbours = Neighbours::new(&vertices, &triangles);
         Ok(Mesh { vertices, triangles, normals, corners, order, tree, neighbours, closed: repaired.closed })
     }
 
