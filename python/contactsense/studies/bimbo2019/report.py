@@ -35,7 +35,7 @@ def print_study(study: Study, console: Console) -> None:
             _errors(study, f"Noise, {each.name}", [(each, kind) for kind in NOISES], "no noise")
             for each in balls
         ),
-        _errors(study, "Obstacles", [(each, each.filters[0]) for each in chosen if each not in balls[1:]]),
+        _errors(study, "Obstacles", _obstacles(chosen, balls)),
         *(_confidence(study, experiment) for experiment in chosen),
     ]
     for sheet in sheets:
@@ -51,7 +51,13 @@ def _errors(
     sheet = _sheet(title)
     obstacles = len({experiment.name for experiment, _ in columns}) > 1
     for number, (experiment, kind) in enumerate(columns):
-        name = _obstacle(experiment) if obstacles else (first if first and not number else kind.name)
+        name = first if first and not number else kind.name
+        if obstacles:
+            name = (
+                _obstacle(experiment)
+                if kind is experiment.filters[0]
+                else f"{_obstacle(experiment)}, {kind.name}"
+            )
         sheet.add_column(f"{name}\ncm", justify="right", no_wrap=True)
         sheet.add_column("\nlink", justify="right", no_wrap=True)
     sheet.add_column("\nn", justify="right")
@@ -66,6 +72,12 @@ def _errors(
         count = f"{min(counts)}" if min(counts) == max(counts) else f"{min(counts)}-{max(counts)}"
         sheet.add_row(short(link, study.links) if link else "all", *cells, count)
     return sheet
+
+
+def _obstacles(chosen: Sequence[Experiment], balls: Sequence[Experiment]) -> list[tuple[Experiment, Filter]]:
+    """Spheres beside the other obstacles, those with each filter that follows them."""
+    first = [(each, each.filters[0]) for each in balls[:1]]
+    return first + [(each, kind) for each in chosen if each not in balls for kind in each.filters]
 
 
 def _obstacle(experiment: Experiment) -> str:
