@@ -8,8 +8,10 @@ const STANDING: f64 = 0.02;
 const EFFECTIVE: f64 = 0.1;
 /// Weight of the newest residual in what is held to be the noise.
 const NEWEST: f64 = 0.3;
-/// Copies are moved by this share of their mode's spread, within limits [m].
-const APART: f64 = 0.1;
+/// Copies are moved by this share of their mode's spread, and where the weighing was much wider than the noise, by the
+/// second; within limits [m].
+const APART: [f64; 2] = [0.1, 0.3];
+const WIDENED: f64 = 4.0;
 const LEAST_APART: f64 = 3e-4;
 const MOST_APART: f64 = 0.02;
 /// Share of particles that are drawn anew from the whole surface, where all is explained and where nothing is.
@@ -26,11 +28,14 @@ pub(super) struct Adaptation {
     /// Share of the present measurement that has not been weighed yet.
     backlog: f64,
     sharpest: f64,
+    widened: bool,
+    /// Measurements in new poses.
+    news: f64,
 }
 
 impl Default for Adaptation {
     fn default() -> Self {
-        Adaptation { variance: None, backlog: 1.0, sharpest: 1.0 }
+        Adaptation { variance: None, backlog: 1.0, sharpest: 1.0, widened: false, news: 0.0 }
     }
 }
 
@@ -47,6 +52,7 @@ impl Adaptation {
             .get(active_joints.saturating_sub(1))
             .map_or(1.0, |updates| updates / (updates + age as f64));
         self.backlog = (self.backlog + news * fade).min(fade);
+        self.news += news;
         self.sharpest = self.noise();
         self.sharpest / self.backlog
     }
@@ -68,6 +74,7 @@ impl Adaptation {
 
     /// Says with which variance the measurement was weighed.
     pub fn weighed(&mut self, variance: f64) {
+        self.widened = variance * self.backlog > WIDENED * self.sharpest;
         self.backlog = (self.backlog - self.sharpest / variance).max(0.0);
     }
 
@@ -84,8 +91,14 @@ impl Adaptation {
     }
 
     /// How far copies are moved apart [m].
-    pub fn apart(spread: f64) -> f64 {
-        (APART * spread).clamp(LEAST_APART, MOST_APART)
+    pub fn apart(&self, spread: f64) -> f64 {
+        let share = APART[usize::from(self.widened)];
+        (share * spread).clamp(LEAST_APART, MOST_APART)
+    }
+
+    /// How much an error of torques is averaged out by the motions so far.
+    pub fn averaged(&self) -> f64 {
+        1.0 / (1.0 + self.news).sqrt()
     }
 
     /// Share of particles to draw anew from the whole surface, by the part of the torque that is left over.

@@ -17,7 +17,7 @@ pub enum Event {
     Continued,
     /// The contact ended.
     Lost,
-    /// The contact is elsewhere than it was held to be, or no particle explained the torque for some updates.
+    /// The contact is elsewhere than it was held to be.
     Changed,
     /// The robot jumped: what was known no longer holds, the particles were spread anew.
     Jumped,
@@ -127,10 +127,12 @@ impl ContactEstimate {
         self.modes.clear();
         self.ambiguous = false;
         self.explained = true;
+        self.residual = 0.0;
+        self.effective_samples = 0.0;
     }
 
-    /// Takes on what the modes say.
-    pub(super) fn set_contact(&mut self, modes: &Modes, frames: &Frames, springy: bool) {
+    /// Takes on what the modes say; `error` is the torque left over, as far as it is not averaged out [Nm].
+    pub(super) fn set_contact(&mut self, modes: &Modes, frames: &Frames, springy: bool, error: f64) {
         self.contact = true;
         for (probability, &link) in self.link_probabilities.iter_mut().zip(&frames.wanted) {
             *probability = modes.on_link(link);
@@ -143,7 +145,10 @@ impl ContactEstimate {
         self.link = Some(mode.link);
         (self.point, self.force, self.normal) = (mode.point, mode.force, mode.normal);
         self.stiffness = springy.then_some(mode.stiffness);
-        self.covariance = modes.covariance(frames, &mode.point) + Matrix3::identity() * RESOLUTION.powi(2);
+        // Particles that agree know no better than they explain: an error of torque is one of the lever.
+        let lever = (error / mode.force.norm()).min(FARTHEST);
+        let floor = RESOLUTION.powi(2) + lever * lever / 3.0;
+        self.covariance = modes.covariance(frames, &mode.point) + Matrix3::identity() * floor;
         self.ambiguous = modes.on_link(mode.link) < SURE_LINK
             || mode.probability < SURE_MODE
             || self.covariance.trace().sqrt() > WIDE;
@@ -152,6 +157,8 @@ impl ContactEstimate {
 
 /// Standard deviation of a point that particles cannot undercut [m].
 const RESOLUTION: f64 = 5e-3;
+/// A lever that is not known better than this is not known [m].
+const FARTHEST: f64 = 1.0;
 /// Less probable links and modes are not sure.
 const SURE_LINK: f64 = 0.8;
 const SURE_MODE: f64 = 0.7;

@@ -24,23 +24,12 @@ use crate::robot::Robot;
 const RELEASE: f64 = 1.0 / 3.0;
 /// A link that moves farther between two updates has jumped [m].
 const JUMP: f64 = 0.2;
-/// Updates in a row that nothing explains before the search begins anew.
-const PATIENCE: u32 = 5;
 /// Particles are drawn anew below this share of effective ones.
 const RESAMPLE: f64 = 0.5;
 /// As many are weighed to choose the sharpness.
 const PROBES: usize = 1024;
 /// A likelihood is widened so often at most, each time to twice the variance.
 const WIDENINGS: usize = 40;
-
-/// Streams of random numbers, one a purpose and step.
-#[derive(Clone, Copy)]
-enum Purpose {
-    Motion,
-    Birth,
-    Comb,
-    Rejuvenation,
-}
 
 #[derive(Debug, Clone)]
 pub(super) struct Swarm {
@@ -66,10 +55,8 @@ pub(super) struct Swarm {
     step: u64,
     /// Updates since the particles were last spread.
     pub age: u64,
-    /// Updates in a row that no particle explained.
-    unexplained: u32,
-    /// Whether the particles were weighed a second time within this update.
-    rescued: bool,
+    /// Streams of random numbers that were used up.
+    streams: u64,
 }
 
 impl Swarm {
@@ -95,8 +82,7 @@ impl Swarm {
             adaptation: Adaptation::default(),
             step: 0,
             age: 0,
-            unexplained: 0,
-            rescued: false,
+            streams: 0,
             robot,
             options,
         })
@@ -104,6 +90,7 @@ impl Swarm {
 
     pub fn reset(&mut self) {
         self.step = 0;
+        self.streams = 0;
         self.felt = false;
         self.estimate.clear();
         self.estimate.event = Event::None;
@@ -131,24 +118,32 @@ impl Swarm {
     pub fn step(&mut self) {
         let moved = if self.step == 0 { 0.0 } else { self.frames.displacement() };
         let event = self.notice(moved);
-        if self.step == 0 || matches!(event, Event::Started | Event::Jumped | Event::Changed) {
+        if self.step == 0 || matches!(event, Event::Started | Event::Jumped) {
             self.spread();
         }
+        if self.felt {
+            self.follow(event, moved);
+        } else {
+            self.estimate.clear();
+            self.estimate.event = event;
+        }
+        self.step += 1;
+        self.age += 1;
+        self.estimate.updates = self.step;
+    }
+
+    /// Lets the particles take in a contact's torque.
+    fn follow(&mut self, mut event: Event, moved: f64) {
         let noise = Noise::at(&self.options, self.age, moved);
         self.predict(&noise);
         let mut effective = self.weigh(moved, &noise);
-        let mut event = event;
-        if self.felt && self.age > 0 && noise.sharpness.is_none() && self.left_over().is_much(RESCUE) {
+        if self.age > 0 && noise.sharpness.is_none() && self.left_over().is_much(RESCUE) {
             (effective, event) = self.rescue(&noise, moved, event);
         }
         let left = self.conclude(event, effective, moved);
         if effective < RESAMPLE * self.particles.len() as f64 {
             self.resample(&noise, moved, Adaptation::fresh_share(left.share));
         }
-        self.rescued = false;
-        self.step += 1;
-        self.age += 1;
-        self.estimate.updates = self.step;
     }
 
     /// Nothing explains the torque, as after a jump of the contact: looks for it on the whole surface at once, beside what
@@ -158,7 +153,6 @@ impl Swarm {
         let kept = self.resample(noise, moved, RESCUERS);
         self.frames.stand();
         self.adaptation.begin();
-        self.rescued = true;
         self.predict(&Noise::none());
         let effective = self.weigh(0.0, &Noise::none());
         let found: f64 = self.weights[kept..count].iter().sum();
@@ -174,8 +168,10 @@ impl Swarm {
         left
     }
 
-    fn stream(&self, purpose: Purpose) -> Stream {
-        self.random.fork(8 * self.step + 4 * self.rescued as u64 + purpose as u64)
+    /// Random numbers that nothing else uses.
+    fn stream(&mut self) -> Stream {
+        self.streams += 1;
+        self.random.fork(self.streams)
     }
 
     fn measuring(&self) -> Measuring {
@@ -198,7 +194,6 @@ impl Swarm {
             (false, true) => Event::Started,
             (true, false) => Event::Lost,
             (true, true) if moved > JUMP => Event::Jumped,
-            (true, true) if self.unexplained >= PATIENCE => Event::Changed,
             (true, true) => Event::Continued,
         }
     }
@@ -206,12 +201,11 @@ impl Swarm {
     /// Begins the search anew.
     fn spread(&mut self) {
         self.frames.stand();
-        let random = self.stream(Purpose::Birth);
+        let random = self.stream();
         self.births.spread(&self.frames, &random, &mut self.particles);
         self.rejuvenate();
         self.adaptation = Adaptation::default();
         self.age = 0;
-        self.unexplained = 0;
     }
 
     pub fn predict(&mut self, noise: &Noise) {
@@ -223,7 +217,7 @@ impl Swarm {
             loose_force: self.options.force_range[1],
             stiffness_range: self.options.stiffness_range,
             sampled: self.options.likelihood == Likelihood::Exponential,
-            random: self.stream(Purpose::Motion),
+            random: self.stream(),
             step: self.step,
         };
         let threads = self.threads();
@@ -298,7 +292,6 @@ impl Swarm {
 
     fn tell(&mut self, event: Event, effective: f64, moved: f64, left: &Left) {
         let explained = !left.is_much(UNEXPLAINED);
-        self.unexplained = if explained { 0 } else { self.unexplained + 1 };
         let norm = self.torque.iter().map(|torque| torque * torque).sum::<f64>().sqrt();
         let Self { estimate, modes, frames, .. } = self;
         let sure = (estimate.contact && !estimate.ambiguous)
@@ -308,13 +301,11 @@ impl Swarm {
         estimate.effective_samples = effective;
         estimate.residual = left.share * norm;
         estimate.explained = explained;
-        if self.felt {
-            let springy = self.options.motion == Motion::Curvature;
-            estimate.set_contact(modes, frames, springy);
-            if let (Event::Continued, Some((before, reach))) = (event, sure) {
-                if (estimate.point - before).norm() > reach + moved {
-                    estimate.event = Event::Changed;
-                }
+        let springy = self.options.motion == Motion::Curvature;
+        estimate.set_contact(modes, frames, springy, left.share * norm * self.adaptation.averaged());
+        if let (Event::Continued, Some((before, reach))) = (event, sure) {
+            if (estimate.point - before).norm() > reach + moved {
+                estimate.event = Event::Changed;
             }
         }
     }
@@ -324,7 +315,7 @@ impl Swarm {
         let count = self.particles.len();
         let anew = ((fresh_share * count as f64) as usize).min(count - 1);
         let kept = count - anew;
-        let offset = self.stream(Purpose::Comb).uniform(0);
+        let offset = self.stream().uniform(0);
         systematic(&self.weights, offset, &mut self.parents[..kept]);
         self.parents[kept..].fill(0);
         self.spare.gather(&self.particles, &self.parents);
@@ -332,14 +323,14 @@ impl Swarm {
         let apart = noise.point.unwrap_or_else(|| {
             // A contact that is held to be fixed is not: it moves about as much as the robot does.
             let slip = if self.options.motion == Motion::Curvature { 0.0 } else { SLIP * moved };
-            Adaptation::apart(self.modes.spread).max(slip)
+            self.adaptation.apart(self.modes.spread).max(slip)
         });
         for k in 0..kept {
             let copy = k > 0 && self.parents[k] == self.parents[k - 1];
             self.particles.spread[k] = if copy || noise.point.is_some() { apart } else { 0.0 };
             self.particles.log_weight[k] = 0.0;
         }
-        let random = self.stream(Purpose::Birth);
+        let random = self.stream();
         for k in kept..count {
             self.births.anywhere(&self.frames, &random, &mut self.particles, k);
         }
@@ -355,7 +346,7 @@ impl Swarm {
             keep_torque: self.options.likelihood == Likelihood::Gaussian,
             stiffness_range: self.options.stiffness_range,
             most_force: self.options.force_range[1],
-            random: self.stream(Purpose::Rejuvenation),
+            random: self.stream(),
         };
         let threads = self.threads();
         let Self { robot, frames, particles, .. } = self;
@@ -383,7 +374,7 @@ impl Left {
 /// Above this share of the torque that the best particle leaves over, nothing is explained.
 const UNEXPLAINED: f64 = 0.5;
 /// Above this one the contact is looked for on the whole surface, by a share of the particles.
-const RESCUE: f64 = 0.3;
+const RESCUE: f64 = 0.2;
 const RESCUERS: f64 = 0.5;
 /// A point that was sure and is farther off now, beyond its spread and the robot's motion, is another contact [m].
 const MOVED_ON: f64 = 0.05;
