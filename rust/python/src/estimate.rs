@@ -160,7 +160,7 @@ impl PyContactEstimate {
         self.estimate.explained
     }
 
-    /// Norm of the torque that the particles leave over, root of the weighted mean square [Nm].
+    /// Norm of the torque that the best particle leaves over [Nm], each joint weighed by its noise.
     #[getter]
     fn residual(&self) -> f64 {
         self.estimate.residual

@@ -108,6 +108,9 @@ impl PyContactParticleFilter {
             links: links.map(|links| names("links", "links", links)).transpose()?,
             ..FilterOptions::default()
         };
+        if friction.is_some() && measurement != "friction_cone" {
+            return Err(input(py, "friction: only for measurement='friction_cone'".into()));
+        }
         options.measurement = match measurement {
             "normal" => Measurement::Normal,
             "friction_cone" => Measurement::FrictionCone(friction.map_or(0.5, |friction| friction.0)),
@@ -163,6 +166,9 @@ impl PyContactParticleFilter {
         let py = q.py();
         let q = Vector::new("q", q)?.slice().to_vec();
         let tau_ext = Vector::new("tau_ext", tau_ext)?.slice().to_vec();
+        if time.is_some_and(|time| !time.0.is_finite()) {
+            return Err(input(py, "time: expected a finite number".into()));
+        }
         let filter = &mut self.filter;
         let estimate = py.detach(|| filter.update(&q, &tau_ext).cloned());
         let estimate = estimate.map_err(|error| to_python(py, error))?;
@@ -218,7 +224,7 @@ fn read_schedule(py: Python<'_>, object: Option<&Bound<'_, PyAny>>) -> PyResult<
         return Ok(schedule);
     };
     for (key, value) in given {
-        let key: String = key.extract()?;
+        let key: String = key.str()?.extract()?;
         let pair = match key.as_str() {
             "sharpness" => &mut *sharpness,
             "point_noise" => &mut *point_noise,

@@ -5,7 +5,7 @@ const NEW_POSE: f64 = 0.005;
 /// Least share of a measurement that counts although the robot stands still.
 const STANDING: f64 = 0.02;
 /// Share of particles that keep a say at each weighing.
-const EFFECTIVE: f64 = 0.1;
+const EFFECTIVE: f64 = 0.25;
 /// Weight of the newest residual in what is held to be the noise.
 const NEWEST: f64 = 0.3;
 /// Copies are moved by this share of their mode's spread, and where the weighing was much wider than the noise, by the
@@ -16,6 +16,8 @@ const LEAST_APART: f64 = 3e-4;
 const MOST_APART: f64 = 0.02;
 /// Share of particles that are drawn anew from the whole surface, where all is explained and where nothing is.
 const FRESH: [f64; 2] = [0.01, 0.3];
+/// Measurements in new poses over which errors are averaged at most.
+const AVERAGED: f64 = 10.0;
 /// Torques that are off by more are not noise, in units of its variance.
 const MOST_VARIANCE: f64 = 30.0;
 /// Updates after which a contact that one joint, two or three feel tells little new.
@@ -96,9 +98,9 @@ impl Adaptation {
         (share * spread).clamp(LEAST_APART, MOST_APART)
     }
 
-    /// How much an error of torques is averaged out by the motions so far.
+    /// How much an error of torques is averaged out by the motions so far: errors of a model never are altogether.
     pub fn averaged(&self) -> f64 {
-        1.0 / (1.0 + self.news).sqrt()
+        1.0 / (1.0 + self.news.min(AVERAGED)).sqrt()
     }
 
     /// Share of particles to draw anew from the whole surface, by the part of the torque that is left over.

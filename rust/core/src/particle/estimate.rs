@@ -83,7 +83,7 @@ pub struct ContactEstimate {
     pub ambiguous: bool,
     /// Whether the particles explain the measured torque.
     pub explained: bool,
-    /// Norm of the torque that the particles leave over, root of the weighted mean square [Nm].
+    /// Norm of the torque that the best particle leaves over [Nm], each joint weighed by its noise.
     pub residual: f64,
     /// Effective number of particles before resampling.
     pub effective_samples: f64,

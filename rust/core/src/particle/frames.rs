@@ -64,6 +64,16 @@ impl Frame {
     }
 }
 
+impl Frame {
+    /// How far a point of the link moved at most since the step before [m].
+    pub fn displacement(&self) -> f64 {
+        let centre = self.pose.transform_point(&self.center) - self.before.transform_point(&self.center);
+        // Chord of the rotation at the rim: |R - R'| by Frobenius is sqrt(2) times that of a unit arm.
+        let turned = (self.pose.rotation - self.before.rotation).norm() / std::f64::consts::SQRT_2;
+        centre.norm() + turned * self.radius
+    }
+}
+
 /// The links' frames; one a link of the robot, empty where none is looked for.
 #[derive(Debug, Clone)]
 pub(super) struct Frames {
@@ -135,13 +145,6 @@ impl Frames {
 
     /// How far a point of the robot moved at most since the step before [m].
     pub fn displacement(&self) -> f64 {
-        let moved = |frame: &Frame| {
-            let centre =
-                frame.pose.transform_point(&frame.center) - frame.before.transform_point(&frame.center);
-            // Chord of the rotation at the rim: |R - R'| by Frobenius is sqrt(2) times that of a unit arm.
-            let turned = (frame.pose.rotation - frame.before.rotation).norm() / std::f64::consts::SQRT_2;
-            centre.norm() + turned * frame.radius
-        };
-        self.wanted.iter().map(|&index| moved(&self.links[index])).fold(0.0, f64::max)
+        self.wanted.iter().map(|&link| self.links[link].displacement()).fold(0.0, f64::max)
     }
 }

@@ -77,7 +77,7 @@ impl Weighing {
         let found = force + variance * left * slope;
         if found <= 0.0 {
             // No contact, or one that has just ended.
-            let ended = if force > 0.0 { force * force / variance } else { 0.0 };
+            let ended = if force > 0.0 { force * force / variance - left.ln() } else { 0.0 };
             let force = if force > 0.0 { 0.0 } else { force };
             return Posterior { force, log_weight: gap.log_weight - 0.5 * ended, ..gap };
         }

@@ -16,6 +16,9 @@ pub enum Measurement {
     FrictionCone(f64),
 }
 
+/// Less is none.
+const LEAST_FRICTION: f64 = 1e-9;
+
 /// The torques of a unit of normal force against those measured, each joint over its noise.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Response {
@@ -66,7 +69,7 @@ impl Measuring {
         let frame = &frames.links[link as usize];
         let measured = frames.measured;
         match self.measurement {
-            Measurement::FrictionCone(friction) if friction > 0.0 && force > 0.0 => {
+            Measurement::FrictionCone(friction) if friction > LEAST_FRICTION && force > 0.0 => {
                 let first = across(normal);
                 let directions = [-normal, first, normal.cross(&first)];
                 let (gram, products) = frame.responses(point, &directions);
@@ -85,7 +88,9 @@ impl Measuring {
 fn without_friction(gram: &Matrix3<f64>, products: &Vector3<f64>, measured: f64, slack: f64) -> Response {
     let all = Response { gain: gram[(0, 0)], product: products[0], measured, penalty: 0.0 };
     let across = gram.fixed_view::<2, 2>(1, 1) + Matrix2::identity() / slack;
-    let Some(inverse) = across.try_inverse() else { return all };
+    let Some(inverse) = across.try_inverse().filter(|inverse| inverse.iter().all(|x| x.is_finite())) else {
+        return all;
+    };
     let beside = Vector2::new(gram[(1, 0)], gram[(2, 0)]);
     let product = Vector2::new(products[1], products[2]);
     let share = inverse * product;

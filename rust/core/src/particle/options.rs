@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use super::measurement::Measurement;
 use super::schedule::Schedule;
 use crate::error::{Error, Result};
-use crate::robot::{Robot, WORLD};
+use crate::robot::{Robot, LARGEST, WORLD};
 
 /// How a contact moves with the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -86,6 +86,8 @@ impl Default for FilterOptions {
 /// As many particles or threads at most.
 const MOST_PARTICLES: usize = 10_000_000;
 const MOST_THREADS: usize = 256;
+/// Noise and thresholds below it are no measurement's [Nm].
+const LEAST_TORQUE: f64 = 1e-9;
 
 impl FilterOptions {
     /// Indices of the links to look on.
@@ -144,8 +146,10 @@ impl FilterOptions {
         if all.len() != nv {
             return Err(Error::Input(format!("{name}: expected 1 or {nv} numbers, got {}", values.len())));
         }
-        match all.iter().find(|x| !(x.is_finite() && **x > 0.0)) {
-            Some(value) => Err(Error::Input(format!("{name}: must be positive, got {value}"))),
+        match all.iter().find(|x| !(LEAST_TORQUE..LARGEST).contains(*x)) {
+            Some(value) => {
+                Err(Error::Input(format!("{name}: must be at least {LEAST_TORQUE:e}, got {value}")))
+            }
             None => Ok(all),
         }
     }

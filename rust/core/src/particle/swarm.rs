@@ -23,7 +23,7 @@ use crate::robot::Robot;
 /// A contact ends below this share of the thresholds at which it begins.
 const RELEASE: f64 = 1.0 / 3.0;
 /// A link that moves farther between two updates has jumped [m].
-const JUMP: f64 = 0.2;
+const JUMP: f64 = 0.5;
 /// Particles are drawn anew below this share of effective ones.
 const RESAMPLE: f64 = 0.5;
 /// As many are weighed to choose the sharpness.
@@ -55,6 +55,8 @@ pub(super) struct Swarm {
     step: u64,
     /// Updates since the particles were last spread.
     pub age: u64,
+    /// Age from which the particles may be weighed a second time within an update.
+    next_rescue: u64,
     /// Streams of random numbers that were used up.
     streams: u64,
 }
@@ -82,6 +84,7 @@ impl Swarm {
             adaptation: Adaptation::default(),
             step: 0,
             age: 0,
+            next_rescue: 1,
             streams: 0,
             robot,
             options,
@@ -118,6 +121,8 @@ impl Swarm {
     pub fn step(&mut self) {
         let moved = if self.step == 0 { 0.0 } else { self.frames.displacement() };
         let event = self.notice(moved);
+        // What moves behind the contact tells nothing of it.
+        let moved = self.estimate.link.map_or(moved, |link| self.frames.links[link].displacement());
         if self.step == 0 || matches!(event, Event::Started | Event::Jumped) {
             self.spread();
         }
@@ -137,7 +142,9 @@ impl Swarm {
         let noise = Noise::at(&self.options, self.age, moved);
         self.predict(&noise);
         let mut effective = self.weigh(moved, &noise);
-        if self.age > 0 && noise.sharpness.is_none() && self.left_over().is_much(RESCUE) {
+        let due = self.age >= self.next_rescue && noise.sharpness.is_none();
+        if due && self.left_over().is_much(RESCUE) {
+            self.next_rescue = self.age + PAUSE;
             (effective, event) = self.rescue(&noise, moved, event);
         }
         let left = self.conclude(event, effective, moved);
@@ -206,6 +213,7 @@ impl Swarm {
         self.rejuvenate();
         self.adaptation = Adaptation::default();
         self.age = 0;
+        self.next_rescue = 1;
     }
 
     pub fn predict(&mut self, noise: &Noise) {
@@ -376,6 +384,8 @@ const UNEXPLAINED: f64 = 0.5;
 /// Above this one the contact is looked for on the whole surface, by a share of the particles.
 const RESCUE: f64 = 0.2;
 const RESCUERS: f64 = 0.5;
+/// Updates from one such search to the next: it costs as much as an update.
+const PAUSE: u64 = 3;
 /// A point that was sure and is farther off now, beyond its spread and the robot's motion, is another contact [m].
 const MOVED_ON: f64 = 0.05;
 /// Share of the robot's motion that a contact held to be fixed moves.
