@@ -4,28 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
-import matplotlib
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from ... import InputError
-from ...demo.style import GREY
+from ..pictures import save_pictures
 from .plot_confidence import draw_confidence
 from .plot_errors import draw_models, draw_noise
 from .plot_obstacles import draw_obstacles
 from .plot_progress import draw_progress
 from .study import Study
 
-STYLE: Any = {
-    "font.size": 10,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.edgecolor": GREY,
-    "axes.titlesize": 11,
-    "axes.titlelocation": "left",
-}
 PICTURES: dict[str, tuple[tuple[float, float], Callable[[Figure, Study], None]]] = {
     "models.png": ((12.5, 5.0), draw_models),
     "noise.png": ((12.5, 5.0), draw_noise),
@@ -41,16 +29,4 @@ def save_plots(study: Study, folder: Path) -> list[Path]:
     Raises:
         InputError: a file cannot be written.
     """
-    paths = []
-    with matplotlib.rc_context(STYLE):
-        for name, (size, draw) in PICTURES.items():
-            figure = Figure(figsize=size, layout="constrained")
-            FigureCanvasAgg(figure)
-            draw(figure, study)
-            try:
-                folder.mkdir(parents=True, exist_ok=True)
-                figure.savefig(folder / name, dpi=130, facecolor="white")
-            except OSError as cause:
-                raise InputError(f"png: cannot write '{folder / name}': {cause}") from cause
-            paths.append(folder / name)
-    return paths
+    return save_pictures(PICTURES, study, folder)
