@@ -306,7 +306,7 @@ def test_an_arm_that_holds_still_learns_a_measurement_once() -> None:
         ({"measurement": "skin"}, "measurement"),
         ({"measurement": "friction_cone", "friction": -0.1}, "friction"),
         ({"measurement": "friction_cone", "friction": np.nan}, "friction"),
-        ({"friction": 0.3}, "friction"),  # without a cone
+        ({"friction": -0.3}, "friction"),  # also where it is not used
         ({"likelihood": "poisson"}, "likelihood"),
         ({"links": ["elbow"]}, "links"),
         ({"links": ["iiwa_link_0"]}, "links"),  # does not move

@@ -108,12 +108,11 @@ impl PyContactParticleFilter {
             links: links.map(|links| names("links", "links", links)).transpose()?,
             ..FilterOptions::default()
         };
-        if friction.is_some() && measurement != "friction_cone" {
-            return Err(input(py, "friction: only for measurement='friction_cone'".into()));
-        }
+        let cone = Measurement::FrictionCone(friction.map_or(0.5, |friction| friction.0));
+        cone.check().map_err(|error| to_python(py, error))?;
         options.measurement = match measurement {
             "normal" => Measurement::Normal,
-            "friction_cone" => Measurement::FrictionCone(friction.map_or(0.5, |friction| friction.0)),
+            "friction_cone" => cone,
             _ => return Err(unknown(py, "measurement", measurement, "'normal', 'friction_cone'")),
         };
         if let Some(particles) = particles {

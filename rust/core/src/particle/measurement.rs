@@ -4,6 +4,7 @@ use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 use super::columns::Slice;
 use super::frames::Frames;
+use crate::error::{Error, Result};
 
 /// Which forces a contact can exert.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -14,6 +15,21 @@ pub enum Measurement {
     /// Across the normal, too, up to this share of the normal force: a friction cone (Manuelli and Tedrake 2016). The
     /// force across is integrated out as a Gaussian with half the cone's radius as its standard deviation.
     FrictionCone(f64),
+}
+
+impl Measurement {
+    /// Whether the friction coefficient is one.
+    ///
+    /// # Errors
+    /// [`Error::Input`] names it.
+    pub fn check(&self) -> Result<()> {
+        match self {
+            Measurement::FrictionCone(friction) if !(friction.is_finite() && *friction >= 0.0) => {
+                Err(Error::Input(format!("friction: must be zero or a positive number, got {friction}")))
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Less is none.

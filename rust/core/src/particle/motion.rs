@@ -82,7 +82,6 @@ impl Move {
         let frame = &frames.links[particles.link[k] as usize];
         let draw = number * DRAWS;
         let whole = (number + self.step).is_multiple_of(REFRESH);
-
         if self.random.uniform(draw) < self.noise.redraw {
             let [low, high] = self.log_radius;
             let radius = (low + (high - low) * self.random.uniform(draw + 1)).exp();

@@ -103,13 +103,7 @@ impl FilterOptions {
                 self.relative_noise
             )));
         }
-        if let Measurement::FrictionCone(friction) = self.measurement {
-            if !(friction.is_finite() && friction >= 0.0) {
-                return Err(Error::Input(format!(
-                    "friction: must be zero or a positive number, got {friction}"
-                )));
-            }
-        }
+        self.measurement.check()?;
         self.schedule.check()?;
         let moving = |&index: &usize| robot.links()[index].body != WORLD;
         let all: Vec<usize> = robot.touchable_links().iter().copied().filter(moving).collect();
