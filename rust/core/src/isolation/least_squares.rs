@@ -159,6 +159,8 @@ mod tests {
                 let copy = matrix.column(k) * 2.0 - matrix.column(3);
                 matrix.set_column(6 - k, &copy);
             }
+            // Random matrices come arbitrarily near to a lower rank: what they determine is then a matter of rounding.
+            prop_assume!(matrix.singular_values()[6 - deficit] > 1e-3);
             let rhs = DVector::from_column_slice(&entries[61..70]);
             let system = system(&matrix, &rhs);
             prop_assert_eq!(system.rank(), 7 - deficit);
