@@ -1,8 +1,8 @@
 //! Contacts anywhere on a robot by a particle filter (Bimbo 2019).
 //!
 //! A particle is a hypothesis: the link, the point on its surface, the obstacle's centre of curvature, the force and
-//! the stiffness of the contact. Its geometry moves with the robot ([`motion`]), its force is weighed against the
-//! measured torque ([`likelihood`]), and particles are drawn anew by their weights ([`resampling`]).
+//! the stiffness of the contact. Its geometry moves with the robot (`motion.rs`), its force is weighed against the
+//! measured torque (`likelihood.rs`), and particles are drawn anew by their weights (`resampling.rs`).
 
 mod adaptation;
 mod birth;
