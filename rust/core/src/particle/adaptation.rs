@@ -1,7 +1,7 @@
 //! The adaptive schedule: how sharply to weigh and how far to move copies, from what the data show.
 
-/// A motion of the robot that makes a measurement a new one [m].
-const NEW_POSE: f64 = 0.005;
+use super::schedule::NEW_POSE;
+
 /// Least share of a measurement that counts although the robot stands still.
 const STANDING: f64 = 0.02;
 /// Share of particles that keep a say at each weighing.

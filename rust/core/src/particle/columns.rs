@@ -53,7 +53,7 @@ columns! {
     point: Vector3<f64> = Vector3::zeros(),
     /// Outward unit normal of the contact, link frame.
     normal: Vector3<f64> = Vector3::z(),
-    /// What stays put in the world: the obstacle's centre of curvature, or the contact point where that is fixed [m].
+    /// The obstacle's centre of curvature, which stays put in the world; unused by the baselines [m].
     centre: Vector3<f64> = Vector3::zeros(),
     /// From the centre to the contact point, negative where the centre is inside the link [m].
     distance: f64 = 0.0,
@@ -77,7 +77,7 @@ columns! {
     measured: f64 = 0.0,
     /// What the freedom of its friction costs in log-likelihood.
     penalty: f64 = 0.0,
-    /// How far the particle is to be moved at random at its next step, a standard deviation [m].
+    /// How far the particle is to be moved along the surface at random, a standard deviation; zero once it was [m].
     spread: f64 = 0.0,
     /// Drawn anew from the whole surface, not copied: never weighed yet.
     fresh: bool = true,

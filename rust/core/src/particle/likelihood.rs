@@ -22,7 +22,7 @@ struct Posterior {
 }
 
 impl Weighing {
-    /// Log-likelihood of particle k, as if nothing else had been measured yet; changes nothing.
+    /// Log-likelihood of a belief, as if nothing else had been measured yet; changes nothing.
     #[inline]
     pub fn log_likelihood(&self, belief: &Belief) -> f64 {
         self.posterior(belief).log_weight - belief.penalty
@@ -89,9 +89,7 @@ impl Weighing {
     /// The paper's (Bimbo 2019, eq. 5), of the predicted force.
     #[inline]
     fn exponential(&self, belief: &Belief) -> Posterior {
-        let force = belief.force.max(0.0);
-        let squared = belief.measured - force * (2.0 * belief.product - force * belief.gain);
-        Posterior { force: belief.force, log_weight: -(squared.max(0.0) / self.variance).sqrt(), left: 1.0 }
+        Posterior { force: belief.force, log_weight: -(misfit(belief) / self.variance).sqrt(), left: 1.0 }
     }
 }
 

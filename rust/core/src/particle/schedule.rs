@@ -59,8 +59,8 @@ impl Schedule {
     }
 }
 
-/// A motion of the robot after which the model's noise is at its full size [m].
-const NEW_POSE: f64 = 0.005;
+/// A motion of the robot that makes a measurement a new one, and the model's noise its full size [m].
+pub(super) const NEW_POSE: f64 = 0.005;
 /// Adaptive noise of a force, relative, and of a distance [m].
 const FORCE_NOISE: f64 = 0.04;
 const DISTANCE_NOISE: f64 = 1e-4;
