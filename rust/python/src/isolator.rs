@@ -10,7 +10,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arrays::{whole, Readings, Vector};
+use crate::arrays::{whole, Number, Readings, Vector};
 use crate::errors::to_python;
 use crate::observer::scalar_or_vector;
 use crate::robot::PyRobot;
@@ -108,21 +108,32 @@ impl PyContact {
         self.contact.source.map_or(JOINT_TORQUES, |sensor| &self.sensors[sensor])
     }
 
-    /// False: the link is known, the point is not.
+    /// Whether 90 % of the places that explain the torques lie within `locate_within` of the point. If not, the link may
+    /// be known, the point is not.
     #[getter]
     fn located(&self) -> bool {
         self.contact.located
     }
 
-    /// Standard deviation of the point on the surface [m]; NaN where there is no point.
+    /// Standard deviation of the point [m]; NaN where there is no point.
     ///
-    /// A torque's is taken as a third of its threshold, or as less where the torques agree better than that.
+    /// The standard deviation of a torque is taken as a third of its threshold, and as more where the torques contradict
+    /// one force. Other places that explain the torques about as well are included. Errors common to all torques, such
+    /// as those of a wrong payload, are not.
     #[getter]
     fn point_std(&self) -> f64 {
         self.contact.point_std
     }
 
-    /// Where it may be, best first: every surface hit of the line of action, or several solutions' points.
+    /// Whether redundant torques agree with the contacts reported. False where they do not, and where there are as many
+    /// unknowns as torques: nothing then checks the assumption that each contact is one force without moment.
+    #[getter]
+    fn verified(&self) -> bool {
+        self.contact.verified
+    }
+
+    /// Where it may be, best first: every surface hit of the line of action, points on other links that explain the
+    /// torques about as well, or the points of several solutions.
     #[getter]
     fn candidates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let wrap = |candidate: &Candidate| PyCandidate { robot: self.robot.clone(), candidate: *candidate };
@@ -201,6 +212,12 @@ impl PyIsolation {
         names(py, &self.robot, &self.isolation.link_candidates)
     }
 
+    /// Whether there were more contacts than `max_contacts`, or more hits of a line than are kept; the nearest are kept.
+    #[getter]
+    fn truncated(&self) -> bool {
+        self.isolation.truncated
+    }
+
     fn __repr__(&self) -> String {
         format!(
             "Isolation({} contacts, rank_deficit={}, residual={:.3e})",
@@ -227,7 +244,8 @@ pub fn contact_count(object: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
 /// 1e-3; a joint feels a contact above it, and a third of it is the scale of the torques' errors. `wrench_threshold`: the
 /// same for wrenches, scalar, `(6,)` or `(n_sensors, 6)` [N, Nm], default 1e-3. `wanted_contacts`: names of sensors whose
 /// contacts are meant and not reported (eq. 20). `max_contacts`: reported at most. `pushing`: forces push on the surface
-/// (if False the point stays open: `located` is False). Raises `InputError` that names the argument.
+/// (if False the point cannot be determined: `located` is False). `locate_within` [m], default 0.05: a contact is located
+/// if 90 % of the places that explain the torques are within this distance of its point. Raises `InputError` that names the argument.
 #[pyclass(name = "ContactIsolator", module = "contactsense._core")]
 pub struct PyContactIsolator {
     robot: Arc<Robot>,
@@ -240,7 +258,7 @@ pub struct PyContactIsolator {
 impl PyContactIsolator {
     #[new]
     #[pyo3(signature = (robot, *, sensors=None, torque_threshold=None, wrench_threshold=None, wanted_contacts=None,
-                        max_contacts=None, pushing=true))]
+                        max_contacts=None, pushing=true, locate_within=Number(0.05)))]
     fn new(
         robot: &Bound<'_, PyRobot>,
         sensors: Option<&Bound<'_, PyAny>>,
@@ -249,9 +267,11 @@ impl PyContactIsolator {
         wanted_contacts: Option<&Bound<'_, PyAny>>,
         max_contacts: Option<&Bound<'_, PyAny>>,
         pushing: bool,
+        locate_within: Number,
     ) -> PyResult<Self> {
         let mut options =
             IsolatorOptions { max_contacts: contact_count(max_contacts)?, pushing, ..Default::default() };
+        options.locate_within = locate_within.0;
         if let Some(sensors) = sensors {
             options.sensors = self::sensors(sensors)?;
         }

@@ -95,6 +95,12 @@ impl PyContactReport {
         contacts(py, &self.robot, &self.sensors, &self.report.isolation)
     }
 
+    /// Whether there were more contacts than `max_contacts`, or more hits of a line than are kept; the nearest are kept.
+    #[getter]
+    fn truncated(&self) -> bool {
+        self.report.isolation.truncated
+    }
+
     fn __repr__(&self) -> String {
         format!(
             "ContactReport(time={:.4}, collision={}, {} contacts)",
@@ -114,7 +120,7 @@ impl PyContactReport {
 /// `observer_gain`, and none where that is at least `0.5 / dt`; infinite for none. `observer_gain`: scalar or `(nv,)` [1/s], default 50. `torque_threshold`: scalar
 /// or `(nv,)` [Nm, N], default 0.5. `bias_time_constant` [s]: tracks the torque that a model's errors feign while
 /// nothing touches; the first time constant is taken as free of contact. `hold_time` [s], default 0.02: a signal stays on so
-/// long after it was last over its threshold. `max_contacts`, `pushing`: as in `ContactIsolator`. Raises `InputError` that
+/// long after it was last over its threshold. `max_contacts`, `pushing`, `locate_within`: as in `ContactIsolator`. Raises `InputError` that
 /// names the argument.
 #[pyclass(name = "ContactMonitor", module = "contactsense._core")]
 pub struct PyContactMonitor {
@@ -126,7 +132,8 @@ pub struct PyContactMonitor {
 impl PyContactMonitor {
     #[new]
     #[pyo3(signature = (robot, *, dt, sensors=None, wanted_contacts=None, observer_gain=None, torque_threshold=None,
-                        wrench_threshold=None, wrench_gain=None, bias_time_constant=None, bias_settle_time=None, hold_time=None, max_contacts=None, pushing=true))]
+                        wrench_threshold=None, wrench_gain=None, bias_time_constant=None, bias_settle_time=None, hold_time=None, max_contacts=None, pushing=true,
+                        locate_within=Number(0.05)))]
     #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
         robot: &Bound<'_, PyRobot>,
@@ -142,6 +149,7 @@ impl PyContactMonitor {
         hold_time: Option<Number>,
         max_contacts: Option<&Bound<'_, PyAny>>,
         pushing: bool,
+        locate_within: Number,
     ) -> PyResult<Self> {
         let mut options = MonitorOptions::new(dt.0);
         if let Some(gain) = observer_gain {
@@ -155,6 +163,7 @@ impl PyContactMonitor {
         }
         options.isolation.max_contacts = contact_count(max_contacts)?;
         options.isolation.pushing = pushing;
+        options.isolation.locate_within = locate_within.0;
         if let Some(hold_time) = hold_time {
             options.hold_time = hold_time.0;
         }

@@ -1,6 +1,6 @@
 //! Where a line of action enters a body, or one behind it.
 
-use super::found::Scene;
+use super::found::{Entry, Scene};
 use super::line::{best_first, LineCast};
 use super::result::Candidate;
 use super::rows::TorqueRows;
@@ -23,14 +23,14 @@ impl Caster {
     }
 
     /// Where the line of action enters the body.
-    pub fn hit_on(&mut self, scene: Scene, body: usize, wrench: &WrenchEstimate) -> Option<Candidate> {
+    pub fn hit_on(&mut self, scene: Scene, body: usize, wrench: &WrenchEstimate) -> Option<Entry> {
         let (start, direction) = wrench.line_of_action()?;
         self.hits.clear();
         for link in scene.region.links_of(scene.robot, body) {
             self.line.cast(scene.robot, scene.kinematics, link, &start, &direction, &mut self.hits);
         }
         best_first(&mut self.hits);
-        self.hits.first().copied().filter(|hit| hit.pushing)
+        Entry::of(&self.hits)
     }
 
     /// The same, or on a body behind whose joints feel what the wrench would cause, but for `limit`.
@@ -41,7 +41,7 @@ impl Caster {
         body: usize,
         wrench: &WrenchEstimate,
         limit: f64,
-    ) -> Option<Candidate> {
+    ) -> Option<Entry> {
         let hit = self.hit_on(scene, body, wrench);
         if hit.is_some() {
             return hit;
@@ -57,11 +57,11 @@ impl Caster {
             let mut chain = robot.chain(other).iter().skip_while(|joint| **joint != body).skip(1).peekable();
             chain.peek().is_some() && chain.all(|joint| scene.region.joints[*joint] && agrees(*joint))
         };
-        let mut best: Option<Candidate> = None;
+        let mut best: Option<Entry> = None;
         for other in body + 1..robot.body_count() {
             if behind(other) {
                 let hit = self.hit_on(scene, other, wrench);
-                best = best.into_iter().chain(hit).min_by(|a, b| a.distance.total_cmp(&b.distance));
+                best = best.into_iter().chain(hit).min_by(|a, b| a.hit.distance.total_cmp(&b.hit.distance));
             }
         }
         best

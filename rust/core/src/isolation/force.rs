@@ -7,6 +7,10 @@ use super::wrench::{for_each_column, jacobian_column};
 use crate::robot::motion::split;
 use crate::robot::{Kinematics, Robot};
 
+/// Smallest pivot of the normal matrix's root, as a share of the largest: its square is the condition of the matrix,
+/// which costs the force that share of its digits.
+const LEAST_PIVOT: f64 = 1e-5;
+
 /// Least squares over the chain of `body`, each torque weighted by its threshold; none where a direction is not felt.
 pub(super) fn identify_force(
     robot: &Robot,
@@ -23,7 +27,10 @@ pub(super) fn identify_force(
         matrix += row * row.transpose() * weight;
         rhs += row * (torque[k] * weight);
     });
-    Some(matrix.cholesky()?.solve(&rhs))
+    let factor = matrix.cholesky()?;
+    let pivots = factor.l_dirty().diagonal();
+    // Beyond this condition the normal equations lose the force to rounding.
+    (pivots.min() > LEAST_PIVOT * pivots.max()).then(|| factor.solve(&rhs))
 }
 
 /// Takes what a force at `at` of `body` explains out of the region's unexplained torque.

@@ -15,6 +15,24 @@ pub(super) struct Scene<'a> {
     pub region: &'a Region,
 }
 
+/// Where a line of action enters a body first.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Entry {
+    pub hit: Candidate,
+    /// Distance of the farthest other place where it enters the same body, zero if there is none [m].
+    pub apart: f64,
+}
+
+impl Entry {
+    /// The first of `hits`, which are ordered best first; none if the force enters nowhere.
+    pub fn of(hits: &[Candidate]) -> Option<Self> {
+        let hit = hits.first().copied().filter(|hit| hit.pushing)?;
+        let entering = hits.iter().filter(|other| other.pushing);
+        let apart = entering.map(|other| (other.point - hit.point).norm()).fold(0.0, f64::max);
+        Some(Self { hit, apart })
+    }
+}
+
 /// A contact that is found.
 #[derive(Debug, Clone)]
 pub(super) struct Found {
@@ -22,12 +40,14 @@ pub(super) struct Found {
     pub hit: Candidate,
     /// Of all torques, with the point known; else that of the wrench.
     pub force: Vector3<f64>,
+    /// Distance of the farthest other place where the line enters the body, zero if there is none [m].
+    pub apart: f64,
 }
 
 impl Found {
-    pub fn new(wrench: WrenchEstimate, hit: Candidate) -> Self {
+    pub fn new(wrench: WrenchEstimate, entry: Entry) -> Self {
         let force = wrench.force;
-        Self { wrench, hit, force }
+        Self { wrench, hit: entry.hit, force, apart: entry.apart }
     }
 }
 

@@ -22,9 +22,14 @@ const CANDIDATES: usize = 512;
 /// A located contact explains the torques but for this (root mean square, in thresholds): more is no noise, but a
 /// moment, a second contact or a wrong model.
 pub(super) const CONTRADICTION: f64 = 1.0;
-/// A contact is located if its force exceeds so many standard deviations of it, and its link's bounding radius so
-/// many of the point's. A weaker force has the direction of the torques' errors, and feigns a certain point.
+/// A force is determined if it exceeds so many standard deviations of it. The direction of a weaker one is that of the
+/// errors of the torques.
 pub(super) const SIGNIFICANCE: f64 = 3.0;
+/// Radius that holds 90 % of a normal distribution, in standard deviations of the distance: at most this, which is for a
+/// distribution along a line (for a circular one it is 1.52).
+const RADIUS_90: f64 = 1.645;
+/// Default of [`IsolatorOptions::locate_within`]: about the width of a hand's contact [m].
+const LOCATE_WITHIN: f64 = 0.05;
 /// A torque or wrench that is a difference of measured ones is none if it is less than this share of them: five
 /// standard deviations of sensors that err by a hundredth.
 pub(super) const LEFT_OVER: f64 = 0.05;
@@ -44,6 +49,8 @@ pub struct IsolatorOptions {
     pub wrench_threshold: Vec<f64>,
     /// Names of the sensors whose contacts are meant and not reported (eq. 20).
     pub wanted_contacts: Vec<String>,
+    /// A contact is located if 90 % of the places that explain the torques are within this distance of its point [m].
+    pub locate_within: f64,
 }
 
 impl Default for IsolatorOptions {
@@ -55,6 +62,7 @@ impl Default for IsolatorOptions {
             sensors: vec![],
             wrench_threshold: vec![1e-3],
             wanted_contacts: vec![],
+            locate_within: LOCATE_WITHIN,
         }
     }
 }
@@ -67,6 +75,7 @@ pub struct ContactIsolator {
     pub(super) wrench_threshold: Vec<Vector6<f64>>,
     pub(super) max_contacts: usize,
     pub(super) pushing: bool,
+    locate_within: f64,
     kinematics: Kinematics,
     pub(super) regions: Regions,
     /// The one being worked on; it changes places with its entry in `regions`.
@@ -85,6 +94,8 @@ pub struct ContactIsolator {
     rows: TorqueRows,
     pub(super) several: SeveralContacts,
     pub(super) near: Vec<usize>,
+    /// By body: cannot carry the contact that is being judged.
+    pub(super) excluded: Vec<bool>,
     pub(super) displaced: Vec<Candidate>,
     pub(super) unexplained: Vec<f64>,
     pub(super) isolation: Isolation,
@@ -99,6 +110,10 @@ impl ContactIsolator {
         let threshold = check_threshold(&robot, &options.torque_threshold)?;
         if options.max_contacts == 0 {
             return Err(Error::Input("max_contacts: must be at least 1".into()));
+        }
+        if !(options.locate_within > 0.0 && options.locate_within.is_finite()) {
+            let text = format!("locate_within: must be positive and finite [m], not {}", options.locate_within);
+            return Err(Error::Input(text));
         }
         let tree = SensorTree::new(&robot, &options.sensors)?;
         let wrench_threshold = check_wrench_threshold(&tree, &options.wrench_threshold)?;
@@ -116,6 +131,7 @@ impl ContactIsolator {
             wrench_threshold,
             max_contacts,
             pushing: options.pushing,
+            locate_within: options.locate_within,
             kinematics: Kinematics::new(&robot),
             active: vec![true; tree.len()],
             regions: Regions::new(&robot, tree, wanted),
@@ -131,6 +147,7 @@ impl ContactIsolator {
             rows: TorqueRows::new(&robot),
             several: SeveralContacts::new(&robot, max_contacts),
             near: Vec::with_capacity(links),
+            excluded: vec![false; robot.body_count()],
             displaced: Vec::with_capacity(CANDIDATES),
             unexplained: vec![0.0; nv],
             isolation,
@@ -288,6 +305,11 @@ impl ContactIsolator {
         let Self { robot, tips, region, residual, limit, measured, .. } = self;
         let over = |k: usize| residual[k].abs() > limit[k].max(share * measured[k]);
         tips.find(robot, |k| region.feels[k] && over(k)).len()
+    }
+
+    /// Whether 90 % of the places are within the distance asked for.
+    pub(super) fn is_near_enough(&self, point_std: f64) -> bool {
+        RADIUS_90 * point_std <= self.locate_within
     }
 
     fn set_rows(&mut self, kinematics: &Kinematics, root: Option<&Root>, widened: bool) {

@@ -2,6 +2,7 @@
 
 mod body_set;
 mod caster;
+mod chi_square;
 mod conics;
 mod force;
 mod found;
@@ -13,6 +14,7 @@ mod pair;
 mod region;
 mod report;
 mod result;
+mod rivals;
 mod rows;
 mod sensed;
 mod several;

@@ -2,9 +2,10 @@
 
 use nalgebra::Vector3;
 
+use super::chi_square::upper_limit;
 use super::force::{explain_force, identify_force};
 use super::found::Found;
-use super::isolator::{ContactIsolator, CONTRADICTION, SIGNIFICANCE};
+use super::isolator::{ContactIsolator, CONTRADICTION};
 use super::result::{Candidate, Contact};
 use super::wrench::{for_each_column, WrenchEstimate};
 use crate::robot::motion::stack;
@@ -12,6 +13,10 @@ use crate::robot::{Kinematics, Robot};
 
 /// One of several contacts is located if its point's standard deviation is less [m].
 const SHARP: f64 = 0.01;
+/// Unknowns of a force on a line of action.
+const LINE_UNKNOWNS: usize = 5;
+/// Root mean square of the distance from one of two equally likely places, as a share of the distance between them.
+const EQUALLY_LIKELY: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Solutions whose points are nearer than this agree [m].
 const SAME_POINT: f64 = 0.005;
 
@@ -27,6 +32,7 @@ impl ContactIsolator {
     /// Contacts that were found together, farthest from the base first.
     pub(super) fn report_several(&mut self, kinematics: &Kinematics) {
         let first = self.isolation.contacts.len();
+        let verified = self.several.verified && !self.several.open && !self.several.contradicted;
         self.report_found_alone(kinematics);
         for side in [1, 0] {
             let Some(best) = self.several.solutions.first() else { break };
@@ -44,6 +50,7 @@ impl ContactIsolator {
         // Several forces share the redundant torques: what is not sharp may as well be the others' doing.
         for contact in &mut self.isolation.contacts[first..] {
             contact.located &= contact.point_std < SHARP;
+            contact.verified = verified;
         }
         // Tolerances are wider than the thresholds; what contradicts those is not located.
         if self.several.contradicted || self.unexplained_share() > CONTRADICTION {
@@ -66,6 +73,7 @@ impl ContactIsolator {
     /// A contact whose candidates beyond `hit` are at the end of the list already.
     pub(super) fn report_found(&mut self, kinematics: &Kinematics, found: &Found, determined: bool) {
         if self.isolation.contacts.len() == self.max_contacts {
+            self.isolation.truncated = true;
             return;
         }
         let (wrench, hit) = (&found.wrench, &found.hit);
@@ -81,14 +89,14 @@ impl ContactIsolator {
         self.near.extend(next.flat_map(|other| self.region.links_of(&robot, other)));
         explain_force(&robot, kinematics, &self.region, body, &at, &found.force, &mut self.unexplained);
         let point_std = self.spread(kinematics, wrench, hit);
-        let size = robot.links[hit.link].surface.as_ref().map_or(0.0, |surface| surface.bounding_sphere().1);
+        let point_std = point_std.max(found.apart * EQUALLY_LIKELY);
         let candidates = self.isolation.contacts.last().map_or(0, |last| last.candidates.end);
         if self.isolation.candidates.len() == candidates {
             self.isolation.candidates.push(*hit);
         }
         let mut contact = contact_at(&robot, kinematics, hit, &found.force, point_std);
         contact.candidates = candidates..self.isolation.candidates.len();
-        contact.located = determined && self.pushing && SIGNIFICANCE * point_std < size;
+        contact.located = determined && self.pushing && self.is_near_enough(point_std);
         self.isolation.contacts.push(contact);
         self.isolation.link_candidates.push(hit.link);
     }
@@ -102,15 +110,25 @@ impl ContactIsolator {
         let force =
             identify_force(robot, kinematics, body, &at, &self.residual, &self.limit).unwrap_or(wrench.force);
         explain_force(robot, kinematics, &self.region, body, &at, &force, &mut self.unexplained);
-        let consistent = wrench.misfit() <= CONTRADICTION && self.unexplained_share() <= CONTRADICTION;
+        let (misfit, checks) = wrench.chi_square();
+        let outside = self.chi_square_outside(body);
+        let torques = self.torque_count();
+        let consistent = misfit <= upper_limit(checks)
+            && misfit + outside <= upper_limit(torques.saturating_sub(LINE_UNKNOWNS));
         self.near.clone_from(&self.isolation.link_candidates);
         let point_std = self.spread(kinematics, wrench, hit);
-        let (robot, link) = (&self.robot, &self.robot.links[hit.link]);
-        let size = link.surface.as_ref().map_or(0.0, |surface| surface.bounding_sphere().1);
-        let mut contact = contact_at(robot, kinematics, hit, &force, point_std);
+        let rivals = self.find_rivals(kinematics, wrench, hit);
+        let point_std = point_std.max(rivals.distance * EQUALLY_LIKELY);
+        let mut contact = contact_at(&self.robot, kinematics, hit, &force, point_std);
         contact.candidates = 0..self.isolation.candidates.len();
-        contact.located = self.pushing && SIGNIFICANCE * point_std < size && consistent;
+        contact.located = self.pushing && consistent && !rivals.open && self.is_near_enough(point_std);
+        contact.verified = consistent && wrench.is_redundant();
         self.isolation.contacts.push(contact);
+    }
+
+    /// Torques of the region.
+    fn torque_count(&self) -> usize {
+        self.region.feels.iter().filter(|feels| **feels).count()
     }
 
     /// Standard deviation of the point [m]: of the line across the surface, or as far as lines displaced by twice
@@ -166,11 +184,12 @@ impl ContactIsolator {
         }
         let own = self.region.links_of(&self.robot, tip).next();
         let named = own.or_else(|| self.nearest_touchable(tip));
-        if let Some(link) = named {
-            if self.isolation.contacts.len() < self.max_contacts {
-                self.isolation.contacts.push(Contact::unlocated(link));
-            }
+        let Some(link) = named else { return };
+        if self.isolation.contacts.len() == self.max_contacts {
+            self.isolation.truncated = true;
+            return;
         }
+        self.isolation.contacts.push(Contact::unlocated(link));
     }
 
     /// Of a body without surface: the first touchable link behind it, else before it.

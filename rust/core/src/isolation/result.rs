@@ -15,7 +15,7 @@ pub struct Candidate {
     pub normal: Vector3<f64>,
     /// Whether the force enters the surface here.
     pub pushing: bool,
-    /// Along the force, from the point of the line nearest to the contact body's origin [m].
+    /// Along the force, from the point of the line nearest to the base [m].
     pub distance: f64,
 }
 
@@ -36,11 +36,15 @@ pub struct Contact {
     pub wrench: Vector6<f64>,
     /// The sensor that saw it, an index into the sensors given; none: the joint torques.
     pub source: Option<usize>,
-    /// False: the link is known, the point is not.
+    /// Whether 90 % of the places that explain the torques lie within [`super::IsolatorOptions::locate_within`] of the
+    /// point. If not, the link may be known, the point is not.
     pub located: bool,
-    /// Standard deviation of the point on the surface [m]. A torque's is taken as a third of its threshold, or as
-    /// less where the torques agree better than that.
+    /// Standard deviation of the point [m]. The standard deviation of a torque is taken as a third of its threshold, and
+    /// as more where the torques contradict one force. Other places that explain the torques as well are included.
     pub point_std: f64,
+    /// Whether redundant torques agree with the contacts reported. Where nothing is redundant (as many torques as
+    /// unknowns), nothing checks the assumption that each contact is one force without moment.
+    pub verified: bool,
     /// This contact's part of [`Isolation::candidates`], best first.
     pub candidates: Range<usize>,
 }
@@ -58,6 +62,7 @@ impl Contact {
             source: None,
             located: false,
             point_std: f64::NAN,
+            verified: false,
             candidates: 0..0,
         }
     }
@@ -76,6 +81,8 @@ pub struct Isolation {
     pub residual: f64,
     /// Links that may carry a contact, likeliest first.
     pub link_candidates: Vec<usize>,
+    /// Whether there were more contacts than `max_contacts`, or more hits of a line than are kept: the nearest are.
+    pub truncated: bool,
 }
 
 impl Isolation {
@@ -85,5 +92,6 @@ impl Isolation {
         self.link_candidates.clear();
         self.rank_deficit = 0;
         self.residual = 0.0;
+        self.truncated = false;
     }
 }

@@ -2,10 +2,10 @@
 
 use nalgebra::{Vector3, Vector6};
 
-use super::found::{Found, Scene};
+use super::found::{Entry, Found, Scene};
 use super::isolator::{ContactIsolator, CONTRADICTION, LEFT_OVER};
 use super::line::best_first;
-use super::result::{Candidate, Contact};
+use super::result::Contact;
 use super::rows::{Root, TORQUE_SHARE};
 use super::wrench::{jacobian_column, WrenchEstimate};
 use crate::robot::motion::{split, stack};
@@ -154,7 +154,9 @@ impl ContactIsolator {
         let body = tip.filter(|tip| self.region.links_of(&self.robot, *tip).next().is_some());
         let named = (1..self.robot.body_count()).filter(|other| body.is_none_or(|body| *other == body));
         let link = named.flat_map(|body| self.region.links_of(&self.robot, body)).next();
-        if let Some(link) = link.filter(|_| self.isolation.contacts.len() < self.max_contacts) {
+        if link.is_some() && self.isolation.contacts.len() == self.max_contacts {
+            self.isolation.truncated = true;
+        } else if let Some(link) = link {
             let mut contact = Contact::unlocated(link);
             let end = self.isolation.candidates.len();
             contact.candidates = end..end;
@@ -171,7 +173,7 @@ impl ContactIsolator {
         kinematics: &Kinematics,
         tip: Option<usize>,
         wrench: &WrenchEstimate,
-    ) -> Option<Candidate> {
+    ) -> Option<Entry> {
         let (start, direction) = wrench.line_of_action()?;
         let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
         let end = self.isolation.candidates.len();
@@ -186,7 +188,7 @@ impl ContactIsolator {
                 self.line.cast(&self.robot, kinematics, link, &start, &direction, hits);
             }
             best_first(&mut self.isolation.candidates[end..]);
-            let best = self.isolation.candidates.get(end).copied().filter(|hit| hit.pushing);
+            let best = Entry::of(&self.isolation.candidates[end..]);
             if best.is_some() {
                 return best;
             }

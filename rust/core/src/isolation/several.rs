@@ -6,10 +6,9 @@
 use nalgebra::Vector3;
 
 use super::caster::Caster;
-use super::found::{Found, Scene, Solution};
+use super::found::{Entry, Found, Scene, Solution};
 use super::open_part::{close, close_near};
 use super::pair::{estimate_pair, Open, PairEstimate};
-use super::result::Candidate;
 use super::rows::{TorqueRows, WrenchRows};
 use super::stacked::Stacked;
 use super::surface_search::{steepness, SurfaceSearch, PAIRS, STARTS};
@@ -221,7 +220,7 @@ impl SeveralContacts {
             }
             let hits = [0, 1].map(|i| self.caster.hit_behind(scene, rows, bodies[i], &wrenches[i], limit));
             let [Some(first), Some(second)] = hits else { return false };
-            let hit_bodies = [first, second].map(|hit| scene.robot.links[hit.link].body);
+            let hit_bodies = [first, second].map(|entry| scene.robot.links[entry.hit.link].body);
             if hit_bodies == bodies {
                 self.keep(wrenches, [first, second], misfit);
                 return true;
@@ -251,7 +250,7 @@ impl SeveralContacts {
             let Some((places, start)) = self.search.start(scene, pair, rank) else { break };
             let exact = close_near(pair, start).is_some_and(|open| self.try_open(scene, pair, &open, limit));
             if !exact {
-                self.keep(pair.wrenches(&start), places, INEXACT);
+                self.keep(pair.wrenches(&start), places.map(|hit| Entry { hit, apart: 0.0 }), INEXACT);
             }
         }
         let means = self.search.means.map(|mean| mean + scene.kinematics.origin);
@@ -276,12 +275,12 @@ impl SeveralContacts {
     }
 
     /// Adds a solution in its place: those that push most squarely first.
-    fn keep(&mut self, wrenches: [WrenchEstimate; 2], hits: [Candidate; 2], misfit: f64) {
-        let steep: f64 = wrenches.iter().zip(&hits).map(|(w, hit)| steepness(&w.force, &hit.normal)).sum();
+    fn keep(&mut self, wrenches: [WrenchEstimate; 2], entries: [Entry; 2], misfit: f64) {
+        let steep: f64 = wrenches.iter().zip(&entries).map(|(w, e)| steepness(&w.force, &e.hit.normal)).sum();
         let rank = self.solutions.partition_point(|other| other.steepness <= steep);
         if rank < SOLUTIONS {
             let [first, second] = wrenches;
-            let contacts = [Found::new(first, hits[0]), Found::new(second, hits[1])];
+            let contacts = [Found::new(first, entries[0]), Found::new(second, entries[1])];
             self.solutions.insert(rank, Solution { contacts, misfit, steepness: steep });
             self.solutions.truncate(SOLUTIONS);
         }

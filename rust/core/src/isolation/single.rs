@@ -69,8 +69,11 @@ impl ContactIsolator {
             }
             body = hit_body;
         }
-        // Two links that take turns: the link is open.
+        // Two links that take turns: the link cannot be determined.
         self.name_link(tip);
+        let wrench = self.estimate(kinematics, body);
+        self.report_wrench(kinematics, &wrench);
+        self.explain(kinematics, body, &wrench);
     }
 
     /// The torques up to `tip` leave one component of the wrench open. With the silence of the joints behind, a body

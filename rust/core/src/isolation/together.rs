@@ -57,10 +57,11 @@ impl SeveralContacts {
             let mut moved = false;
             for body in &mut bodies {
                 let wrench = self.stacked.wrench(self.found.len() - found);
-                let Some(hit) = self.caster.hit_behind(scene, rows, *body, &wrench, limit) else { break };
-                moved |= scene.robot.links[hit.link].body != *body;
-                *body = scene.robot.links[hit.link].body;
-                self.found.push(Found::new(wrench, hit));
+                let Some(entry) = self.caster.hit_behind(scene, rows, *body, &wrench, limit) else { break };
+                let hit_body = scene.robot.links[entry.hit.link].body;
+                moved |= hit_body != *body;
+                *body = hit_body;
+                self.found.push(Found::new(wrench, entry));
             }
             if self.found.len() == found + bodies.len() && !moved {
                 misfit = Some(left);

@@ -10,13 +10,8 @@ use crate::robot::{Kinematics, Robot};
 pub(super) const RANK_TOLERANCE: f64 = 1e-7;
 /// An SVD of a finite 6 x 6 matrix converges within a few sweeps; this bounds the time.
 pub(super) const SVD_ITERATIONS: usize = 200;
-/// Thresholds are set well above the noise: a torque's standard deviation is a third of its threshold, and less only
-/// where redundant torques agree better. Chance makes them agree: never less than a hundredth of that.
-const DEVIATION_AT_MOST: f64 = 1.0 / 3.0;
-const DEVIATION_AT_LEAST: f64 = DEVIATION_AT_MOST / 100.0;
-/// By how much a standard deviation estimated from 1, 2, ... redundant torques can be too small (in 99 of 100 cases,
-/// from the chi distribution).
-const CAUTION: [f64; 5] = [80.0, 10.0, 5.1, 3.7, 3.0];
+/// Standard deviation of a torque in thresholds: thresholds are taken to lie three standard deviations above zero.
+pub(super) const DEVIATION: f64 = 1.0 / 3.0;
 
 /// What the torques of a chain say of a wrench on its last body.
 #[derive(Debug, Clone)]
@@ -71,7 +66,8 @@ pub(super) fn estimate_wrench(
     torque: &[f64],
     threshold: &[f64],
 ) -> WrenchEstimate {
-    let reference = kinematics.bodies[body].position;
+    // One reference for all wrenches of a robot, so that a rank is the same wherever it is asked for.
+    let reference = Vector3::zeros();
     let mut rows = WrenchRows::new();
     for_each_column(robot, kinematics, body, &reference, |k, column| {
         rows.push(&column, torque[k], 1.0 / threshold[k]);
@@ -164,13 +160,29 @@ impl WrenchEstimate {
         [first, along.cross(&first)].map(|direction| direction * root.tr_mul(&direction).norm())
     }
 
-    /// Standard deviation of a torque in thresholds: as the redundant torques and the absence of a moment along the
-    /// force show it, with caution where they are few; more than a third only where they contradict that.
+    /// Standard deviation of a torque in thresholds: more than [`DEVIATION`] where the torques contradict one force, and
+    /// never less, since one or two redundant torques agree by chance.
     fn torque_deviation(&self) -> f64 {
-        let checks = self.redundant + 1;
-        let caution = CAUTION[checks.min(CAUTION.len()) - 1];
-        let estimate = self.misfit();
-        (estimate * caution).clamp(DEVIATION_AT_LEAST, DEVIATION_AT_MOST).max(estimate)
+        self.misfit().max(DEVIATION)
+    }
+
+    /// Sum of squares of what contradicts a single force without moment, in standard deviations of the torques, and
+    /// how many independent checks that is.
+    pub fn chi_square(&self) -> (f64, usize) {
+        let moment = self.moment_along();
+        ((self.unexplained + moment * moment) / (DEVIATION * DEVIATION), self.redundant + 1)
+    }
+
+    /// Whether there are more torques than components of the wrench.
+    pub fn is_redundant(&self) -> bool {
+        self.redundant > 0
+    }
+
+    /// How far the torque of a joint that was not used is from what the wrench causes there, in standard deviations of
+    /// the difference; `threshold` is the joint's.
+    pub fn innovation(&self, column: &Vector6<f64>, torque: f64, threshold: f64) -> f64 {
+        let spread = self.root.tr_mul(column).norm().hypot(threshold) * DEVIATION;
+        (self.torque_on(column) - torque).abs() / spread
     }
 
     /// Root mean square of what contradicts a single force without moment, in thresholds.

@@ -1,0 +1,137 @@
+//! Places that explain the torques about as well as the one that was found. A joint just under its threshold decides
+//! nothing, and a line of action may enter the robot's surface more than once.
+
+use super::isolator::ContactIsolator;
+use super::line::best_first;
+use super::result::{Candidate, Isolation};
+use super::wrench::{jacobian_column, WrenchEstimate, DEVIATION};
+use crate::robot::Kinematics;
+
+/// A hypothesis is unlikely if its chi-square exceeds the best one's by this: a likelihood ratio of 100.
+const UNLIKELY: f64 = 9.21;
+
+/// What else the torques allow.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rivals {
+    /// Distance of the farthest place that is not unlikely from the one found [m].
+    pub distance: f64,
+    /// Whether a force on a body whose contact points the torques do not determine is not unlikely either.
+    pub open: bool,
+}
+
+impl ContactIsolator {
+    /// Rivals of a force on one line that enters the surface at `hit`. Their points are added to the candidates, and
+    /// their links to the link candidates.
+    pub(super) fn find_rivals(
+        &mut self,
+        kinematics: &Kinematics,
+        wrench: &WrenchEstimate,
+        hit: &Candidate,
+    ) -> Rivals {
+        let entering = self.isolation.candidates.iter().filter(|other| other.pushing);
+        let distance = entering.map(|other| (other.point - hit.point).norm()).fold(0.0, f64::max);
+        let mut rivals = Rivals { distance, open: false };
+        let body = self.robot.links[hit.link].body;
+        let limit = wrench.chi_square().0 + self.chi_square_outside(body) + UNLIKELY;
+        self.exclude(kinematics, body, wrench, limit);
+        for other in 1..self.robot.body_count() {
+            if self.excluded[other] || other == body || self.chi_square_outside(other) > limit {
+                continue;
+            }
+            if self.region.links_of(&self.robot, other).next().is_none() {
+                continue;
+            }
+            let estimate = self.estimate(kinematics, other);
+            if estimate.chi_square().0 + self.chi_square_outside(other) > limit {
+                continue;
+            }
+            if estimate.rank < 6 {
+                rivals.open = true;
+                let Self { robot, region, isolation, .. } = self;
+                for link in region.links_of(robot, other) {
+                    if !isolation.link_candidates.contains(&link) {
+                        isolation.link_candidates.push(link);
+                    }
+                }
+            } else if let Some(distance) = self.add_entries(kinematics, other, &estimate, hit) {
+                rivals.distance = rivals.distance.max(distance);
+            }
+        }
+        rivals
+    }
+
+    /// Sum of squares of the torques of joints that a force on `body` does not move, in standard deviations.
+    pub(super) fn chi_square_outside(&self, body: usize) -> f64 {
+        let chain = self.robot.chain(body);
+        let mut next = 0;
+        let mut sum = 0.0;
+        for joint in 1..self.robot.body_count() {
+            // Chains are in rising order.
+            if chain.get(next) == Some(&joint) {
+                next += 1;
+            } else if self.region.joints[joint] {
+                let range = self.robot.velocity_range(joint);
+                sum += range.map(|k| (self.residual[k] / self.limit[k]).powi(2)).sum::<f64>();
+            }
+        }
+        sum / (DEVIATION * DEVIATION)
+    }
+
+    /// Marks the bodies that cannot carry the force, by two tests that are cheap: a torque that is not noise must be of
+    /// a joint before the body, and every joint between `body` and one behind it must feel what `wrench` causes there.
+    fn exclude(&mut self, kinematics: &Kinematics, body: usize, wrench: &WrenchEstimate, limit: f64) {
+        let Self { robot, region, residual, excluded, limit: threshold, .. } = self;
+        let is_noise = |k: usize| (residual[k] / (threshold[k] * DEVIATION)).powi(2) <= limit;
+        let last = (1..robot.body_count())
+            .rev()
+            .find(|joint| region.joints[*joint] && !robot.velocity_range(*joint).all(is_noise));
+        for other in 1..robot.body_count() {
+            let chain = robot.chain(other);
+            excluded[other] = last.is_some_and(|joint| !chain.contains(&joint));
+            if other > body && chain.contains(&body) {
+                let feels = |(column, k): (usize, usize)| {
+                    let axis = jacobian_column(robot, kinematics, other, column, &wrench.reference);
+                    wrench.innovation(&axis, residual[k], threshold[k]).powi(2) <= limit
+                };
+                let parent = robot.parent_body(other);
+                excluded[other] |= (parent != body && excluded[parent])
+                    || !robot.velocity_range(other).enumerate().all(feels);
+            }
+        }
+    }
+
+    /// Adds the places where the line of action, or one displaced by two standard deviations, enters the body's links
+    /// to the candidates; the distance of the farthest from `hit` [m], none where no line does.
+    fn add_entries(
+        &mut self,
+        kinematics: &Kinematics,
+        body: usize,
+        wrench: &WrenchEstimate,
+        hit: &Candidate,
+    ) -> Option<f64> {
+        let (start, direction) = wrench.line_of_action()?;
+        let at = start + direction * direction.dot(&(hit.point - kinematics.origin - start));
+        let [first, second] = wrench.displacements(&at);
+        let mut farthest = None;
+        for displacement in [first * 0.0, first * 2.0, first * -2.0, second * 2.0, second * -2.0] {
+            self.displaced.clear();
+            for link in self.region.links_of(&self.robot, body) {
+                let start = start + displacement;
+                self.line.cast(&self.robot, kinematics, link, &start, &direction, &mut self.displaced);
+            }
+            best_first(&mut self.displaced);
+            let Some(entry) = self.displaced.first().filter(|entry| entry.pushing) else { continue };
+            let distance = (entry.point - hit.point).norm();
+            farthest = Some(distance.max(farthest.unwrap_or(0.0)));
+            let Isolation { candidates, link_candidates, .. } = &mut self.isolation;
+            if candidates.len() < candidates.capacity() {
+                let leaving = candidates.iter().position(|other| !other.pushing).unwrap_or(candidates.len());
+                candidates.insert(leaving, *entry);
+            }
+            if !link_candidates.contains(&entry.link) {
+                link_candidates.push(entry.link);
+            }
+        }
+        farthest
+    }
+}
