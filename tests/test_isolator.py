@@ -11,7 +11,7 @@ from robots import BY_NAME
 
 import contactsense as cs
 from contactsense.studies.sampling import random_configuration
-from contactsense.studies.single_contacts import LinkResult, run, touches
+from contactsense.studies.single_contacts import ENTERS_TWICE, UNCERTAIN, LinkResult, run, touches
 
 ARMS = ("iiwa14", "panda", "ur5", "iiwa14_mesh", "xarm7")
 HUMANOIDS = ("atlas", "atlas_v5", "atlas_hull", "talos", "g1")
@@ -32,8 +32,11 @@ def outcomes(results: list[LinkResult]) -> set[str]:
 @pytest.mark.parametrize("name", HUMANOIDS)
 def test_every_reachable_contact_of_a_floating_base_is_located(name: str) -> None:
     results = run(robot_named(name), points=30, seed=11)
-    assert outcomes(results) <= {"located", "out of reach"}
-    assert sum(result.outcomes["located"] for result in results) > 20 * len(results)
+    silent = {"link only, own joint silent"}
+    assert outcomes(results) <= {"located", ENTERS_TWICE, UNCERTAIN, "out of reach"} | silent
+    exact = sum(result.outcomes["located"] + result.outcomes[ENTERS_TWICE] for result in results)
+    assert exact > 20 * len(results)
+    assert sum(result.outcomes[kind] for result in results for kind in silent) <= 0.01 * exact
 
 
 @pytest.mark.parametrize("name", ARMS)
@@ -42,8 +45,9 @@ def test_arms_locate_what_six_joints_determine_and_name_the_rest(name: str) -> N
     results = run(robot, points=60, seed=12)
     # Where the own joint feels the force, the link is right.
     silent = {"link only, own joint silent", "other link, own joint silent"}
-    assert outcomes(results) <= {"located", "link only, rank < 6", "not felt", "out of reach"} | silent
-    located = [result.link for result in results if result.outcomes["located"]]
+    assert outcomes(results) <= {"located", ENTERS_TWICE, UNCERTAIN, "link only, rank < 6", "not felt", "out of reach"} | silent
+    exact = [result for result in results if result.outcomes["located"] + result.outcomes[ENTERS_TWICE]]
+    located = [result.link for result in exact]
     before = {link: int(robot.jacobian(robot.neutral(), link).any(axis=0).sum()) for link in robot.link_names}
     assert set(located) == {
         result.link
@@ -81,7 +85,9 @@ def test_all_vectors_of_a_located_contact_agree() -> None:
         np.testing.assert_allclose(contact.wrench, [*contact.force, *moment], atol=1e-9)
         assert contact.normal @ contact.force < 0.0
         assert contact.source == "joint torques"
-        assert contact.point_std < 1e-5
+        # The threshold of 1 mNm stands for a noise of a third of it.
+        assert contact.point_std < 1e-4
+        assert contact.verified
         assert isolation.residual < 1e-9
         assert isolation.rank_deficit == 0
         assert [c.pushing for c in contact.candidates] == sorted(

@@ -117,7 +117,9 @@ def test_three_contacts_that_share_joints_are_found_together() -> None:
         isolation = isolator.isolate(q, torque(robot, pushes))
         assert_found(isolation, pushes)
         located += sum(contact.located for contact in isolation.contacts)
-    assert located > 30
+        assert not any(c.located and c.point_std > 0.01 for c in isolation.contacts)
+    # Eighteen unknowns of three wrenches from few more torques: noise of the stated size moves many by centimetres.
+    assert located > 10
 
 
 def test_the_last_joint_under_its_threshold_decides_nothing() -> None:
@@ -169,13 +171,15 @@ def test_a_moment_beside_a_push_locates_nothing_wrong() -> None:
     robot = cs.Robot.named("atlas")
     isolator = cs.ContactIsolator(robot)
     rng = np.random.default_rng(6)
+    located = 0
     for q, (hand, foot) in scenes(robot, [("l_hand", "r_foot")] * 30, seed=7):
         twist = robot.jacobian(q, "l_hand")[3:].T @ rng.uniform(-2.0, 2.0, 3)
         contacts = {c.link: c for c in isolator.isolate(q, torque(robot, [hand, foot]) + twist).contacts}
         assert set(contacts) == {"l_hand", "r_foot"}
         assert not contacts["l_hand"].located
-        assert contacts["r_foot"].located
+        located += contacts["r_foot"].located
         np.testing.assert_allclose(contacts["r_foot"].point, foot.point, atol=1e-9)
+    assert located > 15
 
 
 def test_sensors_find_a_contact_each_and_the_joints_the_rest() -> None:

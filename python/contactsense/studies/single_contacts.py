@@ -20,6 +20,9 @@ FloatArray = NDArray[np.float64]
 
 TOLERANCE = 1e-9  # [m], and relative for the force
 RANK_TOLERANCE = 1e-7  # of the largest singular value
+ENTERS_TWICE = "exact, line enters twice"
+UNCERTAIN = "exact, uncertain"
+UNCERTAIN_STD = 0.03  # [m]; with 90 % within 0.05 m, the default of `locate_within`
 TRIES = 300
 POINTS_PER_POSE = 10
 
@@ -54,7 +57,9 @@ def judge(
 ) -> tuple[str, float, float]:
     """Outcome of one touch, and the errors of point [m] and force (relative; NaN where not located).
 
-    "located"; "not felt" by any joint; the link alone is right, or another is named, because the wrench has
+    "located"; "exact, line enters twice": the point is exact but not located, since the line of action enters the
+    robot's surface elsewhere, too, and a push there causes the same torques; "exact, uncertain": the same, since noise as large as
+    the thresholds say could move the point by centimetres; "not felt" by any joint; the link alone is right, or another is named, because the wrench has
     "rank < 6" or the "own joint" of the touched link is "silent" (under its threshold). "WRONG": said to be
     located, but is not within the tolerance; "MISSED": determined, but not located.
     """
@@ -67,12 +72,15 @@ def judge(
     if not contacts:
         return ("not felt", np.nan, np.nan)
     contact = contacts[0]
+    point_error = float(np.linalg.norm(contact.point - touch.point))
+    force_error = float(np.linalg.norm(contact.force - touch.force) / np.linalg.norm(touch.force))
+    exact = point_error <= TOLERANCE and force_error <= TOLERANCE and contact.link == touch.link
     if contact.located:
-        point_error = float(np.linalg.norm(contact.point - touch.point))
-        force_error = float(np.linalg.norm(contact.force - touch.force) / np.linalg.norm(touch.force))
-        if point_error > TOLERANCE or force_error > TOLERANCE or contact.link != touch.link:
-            return ("WRONG", point_error, force_error)
-        return ("located", point_error, force_error)
+        return ("located" if exact else "WRONG", point_error, force_error)
+    if exact and sum(candidate.pushing for candidate in contact.candidates) > 1:
+        return (ENTERS_TWICE, point_error, force_error)
+    if exact and contact.point_std > UNCERTAIN_STD:
+        return (UNCERTAIN, point_error, force_error)
     if determined and own_joint_feels:
         return ("MISSED", np.nan, np.nan)
     named = "link only" if contact.link == touch.link else "other link"
