@@ -196,6 +196,7 @@ impl ContactIsolator {
         lagged: Option<&WrenchObserver>,
     ) -> &Isolation {
         self.isolation.clear();
+        self.several.work.reset();
         self.divide(kinematics, tau_ext, wrenches, lagged);
         self.unexplained.copy_from_slice(&self.residual);
         // Joints that feel nothing at all do not contradict the sensors: an observer is slower than they are.
@@ -285,13 +286,12 @@ impl ContactIsolator {
 
     /// The contacts that the joints behind all others determine; links are named for the rest. False if there are none.
     fn isolate_partly(&mut self, kinematics: &Kinematics) -> bool {
-        self.set_rows(kinematics, None, true);
-        let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
-        self.several.solve_exactly(scene, &mut self.rows);
-        self.several.solutions.clear();
-        if self.several.found.is_empty() {
+        if self.several.peeled == 0 {
             return false;
         }
+        self.set_rows(kinematics, None, true);
+        let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
+        self.several.peel_all(scene, &mut self.rows);
         self.report_found_alone(kinematics);
         let Self { robot, tips, region, rows, limit, .. } = self;
         tips.find(robot, |k| region.feels[k] && rows.torque[k].abs() > limit[k]);

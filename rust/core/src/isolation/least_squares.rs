@@ -10,6 +10,8 @@ pub(super) struct LeastSquares {
     columns: usize,
     rows: usize,
     pivots: Vec<usize>,
+    /// First entry of each reflector, whose place in `entries` the triangle's diagonal takes, and its scale.
+    heads: Vec<[f64; 2]>,
     rank: usize,
 }
 
@@ -22,6 +24,7 @@ impl LeastSquares {
             columns: 0,
             rows: 0,
             pivots: vec![0; columns],
+            heads: vec![[0.0; 2]; columns],
             rank: 0,
         }
     }
@@ -52,7 +55,7 @@ impl LeastSquares {
 
     /// Factorises; singular directions smaller than `tolerance` of the largest count as open.
     pub fn factorise(&mut self, tolerance: f64) {
-        let Self { entries, capacity, columns, rows, pivots, rank } = self;
+        let Self { entries, capacity, columns, rows, pivots, heads, rank } = self;
         let (capacity, columns, rows) = (*capacity, *columns, *rows);
         pivots.iter_mut().enumerate().for_each(|(i, pivot)| *pivot = i);
         *rank = 0;
@@ -85,9 +88,28 @@ impl LeastSquares {
                 let share: f64 = scale * reflector.iter().zip(&*column).map(|(a, b)| a * b).sum::<f64>();
                 column.iter_mut().zip(&*reflector).for_each(|(x, a)| *x -= share * a);
             }
+            heads[k] = [reflector[0], scale];
             reflector[0] = diagonal;
             *rank = k + 1;
         }
+    }
+
+    /// The part of a vector over the rows that no combination of the columns reaches: its coordinates in a basis of that
+    /// space are `vector[rank..rows]` afterwards.
+    pub fn project_out(&self, vector: &mut [f64]) {
+        for (k, [head, scale]) in self.heads.iter().enumerate().take(self.rank) {
+            let tail = &self.entries[k * self.capacity + k + 1..k * self.capacity + self.rows];
+            let dot: f64 = tail.iter().zip(&vector[k + 1..self.rows]).map(|(a, x)| a * x).sum();
+            let share = scale * (head * vector[k] + dot);
+            vector[k] -= share * head;
+            vector[k + 1..self.rows].iter_mut().zip(tail).for_each(|(x, a)| *x -= share * a);
+        }
+    }
+
+    /// What the solution leaves of the right side, in the basis of [`LeastSquares::project_out`].
+    pub fn left_over(&self) -> &[f64] {
+        let rhs = self.columns * self.capacity;
+        &self.entries[rhs + self.rank..rhs + self.rows]
     }
 
     /// How many combinations of the unknowns the rows determine.
@@ -105,7 +127,7 @@ impl LeastSquares {
         let rhs = self.columns * self.capacity;
         x[..self.columns].fill(0.0);
         self.back_substitute(x, |row| self.entries[rhs + row]);
-        self.entries[rhs + self.rank..rhs + self.rows].iter().map(|r| r * r).sum()
+        self.left_over().iter().map(|r| r * r).sum()
     }
 
     /// The `index`-th direction that the rows leave open, into `x`.
@@ -172,6 +194,13 @@ mod tests {
             let residual = &rhs - &matrix * DVector::from_column_slice(&x);
             prop_assert!(matrix.tr_mul(&residual).norm() < 1e-9);
             prop_assert!((left - residual.norm_squared()).abs() < 1e-9);
+            // A column added would take its projection out of the rest.
+            let mut extra = entries[7..16].to_vec();
+            system.project_out(&mut extra);
+            let column = DVector::from_column_slice(&entries[7..16]);
+            let kept = &extra[system.rank()..];
+            let along: f64 = kept.iter().zip(system.left_over()).map(|(a, b)| a * b).sum();
+            prop_assert!((along - column.dot(&residual)).abs() < 1e-9);
             for index in 0..deficit {
                 system.open_direction(index, &mut x);
                 let direction = DVector::from_column_slice(&x);

@@ -9,6 +9,7 @@ mod found;
 mod isolator;
 mod least_squares;
 mod line;
+mod one_more;
 mod open_part;
 mod pair;
 mod region;
@@ -22,6 +23,7 @@ mod single;
 mod stacked;
 mod surface_search;
 mod together;
+mod work;
 mod wrench;
 
 pub use isolator::{ContactIsolator, IsolatorOptions};

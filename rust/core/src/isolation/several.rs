@@ -12,6 +12,7 @@ use super::pair::{estimate_pair, Open, PairEstimate};
 use super::rows::{TorqueRows, WrenchRows};
 use super::stacked::Stacked;
 use super::surface_search::{steepness, SurfaceSearch, PAIRS, STARTS};
+use super::work::Work;
 use super::wrench::WrenchEstimate;
 use crate::detection::TipSearch;
 use crate::robot::{Robot, WORLD};
@@ -28,6 +29,11 @@ const INEXACT: f64 = f64::INFINITY;
 const SOLUTIONS: usize = 16;
 /// Rounds until the contact links stand still; ten, as in Vorndamme 2017.
 const ROUNDS: usize = 10;
+/// Multiplications of an estimate of two wrenches, and of a pair of sampled places.
+const PAIR_WORK: usize = 6000;
+const PLACES_WORK: usize = 80;
+/// A search with fewer pairs of places says nothing.
+const FEWEST_PAIRS: usize = 400;
 
 /// Workspace, and the answer: contacts found one by one, and solutions for two more, best first.
 #[derive(Debug, Clone)]
@@ -42,12 +48,18 @@ pub(super) struct SeveralContacts {
     pub contradicted: bool,
     /// Whether nothing checks how the sum of two wrenches was divided: the solutions are as many as conditions allow.
     pub open: bool,
+    /// How many contacts were taken out one by one by the exact solution.
+    pub peeled: usize,
+    /// What is left of the work that one call may take.
+    pub work: Work,
     pub(super) max_contacts: usize,
     tips: TipSearch,
     pub(super) caster: Caster,
     search: SurfaceSearch,
     pub(super) stacked: Stacked,
     pub(super) bodies: Vec<usize>,
+    /// Misfit of one more wrench, and its body, best first.
+    pub(super) one_more: Vec<(f64, usize)>,
     pub(super) places: Vec<(usize, Vector3<f64>)>,
 }
 
@@ -60,12 +72,15 @@ impl SeveralContacts {
             verified: false,
             contradicted: false,
             open: false,
+            peeled: 0,
+            work: Work::new(),
             max_contacts,
             tips: TipSearch::new(robot),
             caster: Caster::new(),
             search: SurfaceSearch::new(robot),
             stacked: Stacked::new(robot, max_contacts),
             bodies: Vec::with_capacity(max_contacts + 1),
+            one_more: Vec::with_capacity(robot.body_count()),
             places: Vec::with_capacity(max_contacts + 2),
         }
     }
@@ -82,6 +97,7 @@ impl SeveralContacts {
     /// Contacts that explain the torques but for rounding. Uses up `rows`.
     pub fn solve_exactly(&mut self, scene: Scene, rows: &mut TorqueRows) -> bool {
         self.clear();
+        self.peeled = 0;
         let Scene { robot, .. } = scene;
         while self.found.len() < self.max_contacts {
             let felt = |k: usize| rows.torque[k].abs() > SILENT * rows.tolerance[k];
@@ -111,8 +127,21 @@ impl SeveralContacts {
                 self.bodies.extend(self.tips.tips().iter().take(self.max_contacts));
                 return self.solve_together(scene, rows, EXACT);
             }
+            self.peeled += 1;
         }
         false
+    }
+
+    /// The contacts among them that their own joints determine, one by one. Uses up `rows`.
+    pub fn peel_all(&mut self, scene: Scene, rows: &mut TorqueRows) {
+        self.clear();
+        while self.found.len() < self.max_contacts {
+            let felt = |k: usize| rows.torque[k].abs() > SILENT * rows.tolerance[k];
+            let count = self.tips.find(scene.robot, |k| scene.region.feels[k] && felt(k)).len();
+            if !(0..count).any(|index| self.peel(scene, rows, index)) {
+                break;
+            }
+        }
     }
 
     /// Contacts that explain the torques within their tolerances. `tips` feel them.
@@ -133,7 +162,7 @@ impl SeveralContacts {
                     if rest_is_explained(scene, rows, before, tip) {
                         continue;
                     }
-                    let solved = self.solve_pair(scene, rows, [before, tip], GOOD) && self.verified;
+                    let solved = self.solve_pair(scene, rows, [before, tip], GOOD);
                     if let (true, Some(solution)) = (solved, self.solutions.first()) {
                         if best.is_none_or(|(misfit, _)| solution.misfit < misfit) {
                             best = Some((solution.misfit, before));
@@ -142,7 +171,7 @@ impl SeveralContacts {
                 }
                 best.is_some_and(|(_, before)| self.solve_pair(scene, rows, [before, tip], GOOD))
             }
-            [first, second] => self.solve_pair(scene, rows, [second, first], GOOD) && self.verified,
+            [first, second] => self.solve_pair(scene, rows, [second, first], GOOD),
             _ => false,
         };
         if solved {
@@ -196,17 +225,25 @@ impl SeveralContacts {
     }
 
     /// Every pair of forces on two bodies, or on bodies behind them that their lines hit, that explains the torques
-    /// but for `limit`.
+    /// but for `limit`. Without a proof (more conditions than unknowns) only if the torques are taken to be exact, and a
+    /// free base or a sensor tells the sum of both.
     fn solve_pair(&mut self, scene: Scene, rows: &TorqueRows, mut bodies: [usize; 2], limit: f64) -> bool {
         self.solutions.clear();
         if self.found.len() + 2 > self.max_contacts {
             return false;
         }
+        let proof = limit > EXACT || !(scene.robot.floating_base() || rows.root.is_some());
         for _ in 0..ROUNDS {
+            if !self.work.spend(PAIR_WORK) {
+                return false;
+            }
             let Some(pair) = estimate_pair(scene.robot, scene.region, rows, bodies) else { return false };
             self.rank_deficit = pair.deficit;
             self.verified = pair.checks() > 0;
             self.open = pair.deficit > 1;
+            if proof && !self.verified {
+                return false;
+            }
             if pair.deficit > 0 {
                 // Between sensors the bodies are fewer.
                 let pairs = if scene.region.whole { PAIRS } else { PAIRS / 3 };
@@ -243,6 +280,10 @@ impl SeveralContacts {
             return;
         }
         if exceeds(pair.unexplained_share(), limit) {
+            return;
+        }
+        let pairs = pairs.min(self.work.left() / PLACES_WORK);
+        if pairs < FEWEST_PAIRS || !self.work.spend(pairs * PLACES_WORK) {
             return;
         }
         self.search.search(scene, pair, pairs);

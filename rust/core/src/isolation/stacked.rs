@@ -8,6 +8,7 @@ use super::least_squares::LeastSquares;
 use super::rows::{Root, TorqueRows, LEVER};
 use super::several::exceeds;
 use super::wrench::{WrenchEstimate, RANK_TOLERANCE};
+use crate::robot::motion::{split, stack};
 use crate::robot::Robot;
 
 /// Share of an open direction that a contact may have and still count as determined.
@@ -16,40 +17,58 @@ const UNTOUCHED: f64 = 1e-6;
 /// Workspace.
 #[derive(Debug, Clone)]
 pub(super) struct Stacked {
-    system: LeastSquares,
+    pub(super) system: LeastSquares,
     solution: Vec<f64>,
     direction: Vec<f64>,
-    contacts: usize,
+    pub(super) contacts: usize,
     unexplained: f64,
+    pub(super) rows: Vec<Row>,
+    /// The unit vector of each row, without what the estimated wrenches reach.
+    pub(super) projected: Vec<f64>,
+    /// Six columns of one more wrench, without that.
+    pub(super) columns: Vec<f64>,
+}
+
+/// A row of the system.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Row {
+    /// The joint whose torque it is; none: a component of a sensor's wrench.
+    pub joint: Option<usize>,
+    /// What it says of a wrench, weighted, the moment scaled by the lever.
+    pub axis: Vector6<f64>,
 }
 
 impl Stacked {
     /// Space for so many contacts.
     pub fn new(robot: &Robot, contacts: usize) -> Self {
-        let unknowns = 6 * contacts;
+        let (rows, unknowns) = (robot.nv() + 6, 6 * contacts);
         Self {
-            system: LeastSquares::new(robot.nv() + 6, unknowns),
+            system: LeastSquares::new(rows, unknowns),
             solution: vec![0.0; unknowns],
             direction: vec![0.0; unknowns],
             contacts: 0,
             unexplained: 0.0,
+            rows: Vec::with_capacity(rows),
+            projected: vec![0.0; rows * rows],
+            columns: vec![0.0; 6 * rows],
         }
     }
 
     /// Least squares for a wrench on each body; returns the rank deficit (eq. 31).
     pub fn estimate(&mut self, scene: Scene, rows: &TorqueRows, bodies: &[usize]) -> usize {
         self.contacts = bodies.len();
+        self.rows.clear();
         self.system.reset(6 * bodies.len());
         if let Some(Root { axes, value, tolerance, .. }) = &rows.root {
             for ((axis, value), tolerance) in axes.iter().zip(value).zip(tolerance) {
-                self.system.add_row(value / tolerance);
-                (0..bodies.len()).for_each(|index| self.set_wrench(index, axis, 1.0 / tolerance));
+                self.add_row(None, axis, *value, 1.0 / tolerance);
+                (0..bodies.len()).for_each(|index| self.set_wrench(index));
             }
         }
-        for_each_torque(scene, rows, bodies, |k, weight, on| {
-            self.system.add_row(rows.torque[k] * weight);
+        for_each_torque(scene, bodies, |joint, k, on| {
+            self.add_row(Some(joint), &rows.axes[k], rows.torque[k], 1.0 / rows.tolerance[k]);
             for (index, _) in bodies.iter().enumerate().filter(|(_, body)| on(**body)) {
-                self.set_wrench(index, &rows.axes[k], weight);
+                self.set_wrench(index);
             }
         });
         self.system.factorise(RANK_TOLERANCE);
@@ -57,11 +76,22 @@ impl Stacked {
         6 * bodies.len() - self.system.rank()
     }
 
-    fn set_wrench(&mut self, index: usize, axis: &Vector6<f64>, weight: f64) {
-        for i in 0..6 {
-            let scale = if i < 3 { weight } else { weight / LEVER };
-            self.system.set(6 * index + i, axis[i] * scale);
-        }
+    /// Multiplications of an estimate of so many wrenches.
+    pub fn work(&self, contacts: usize) -> usize {
+        let columns = 6 * contacts;
+        self.rows.capacity() * columns * columns
+    }
+
+    fn add_row(&mut self, joint: Option<usize>, axis: &Vector6<f64>, value: f64, weight: f64) {
+        let (linear, angular) = split(axis);
+        self.rows.push(Row { joint, axis: stack(&(linear * weight), &(angular * (weight / LEVER))) });
+        self.system.add_row(value * weight);
+    }
+
+    /// The last row's part of a wrench.
+    fn set_wrench(&mut self, index: usize) {
+        let Some(row) = self.rows.last() else { return };
+        (0..6).for_each(|i| self.system.set(6 * index + i, row.axis[i]));
     }
 
     fn set_force(&mut self, index: usize, axis: &Vector6<f64>, point: &Vector3<f64>, weight: f64) {
@@ -124,7 +154,8 @@ impl Stacked {
                 }
             }
         }
-        for_each_torque(scene, rows, bodies, |k, weight, on| {
+        for_each_torque(scene, bodies, |_, k, on| {
+            let weight = 1.0 / rows.tolerance[k];
             self.system.add_row(rows.torque[k] * weight);
             for (index, (_, point)) in places.iter().enumerate().filter(|(_, (body, _))| on(*body)) {
                 self.set_force(index, &rows.axes[k], point, weight);
@@ -141,19 +172,18 @@ impl Stacked {
     }
 }
 
-/// Calls `each` with every torque that one of the bodies can cause, its weight, and whether a body can.
+/// Calls `each` with every joint and velocity variable whose torque one of the bodies can cause, and whether a body can.
 fn for_each_torque(
     scene: Scene,
-    rows: &TorqueRows,
     bodies: impl IntoIterator<Item = impl std::borrow::Borrow<usize>> + Clone,
-    mut each: impl FnMut(usize, f64, &dyn Fn(usize) -> bool),
+    mut each: impl FnMut(usize, usize, &dyn Fn(usize) -> bool),
 ) {
     let robot = scene.robot;
     for joint in (1..robot.body_count()).filter(|joint| scene.region.joints[*joint]) {
         let on = |body: usize| robot.chain(body).contains(&joint);
         if bodies.clone().into_iter().any(|body| on(*body.borrow())) {
             for k in robot.velocity_range(joint) {
-                each(k, 1.0 / rows.tolerance[k], &on);
+                each(joint, k, &on);
             }
         }
     }

@@ -2,12 +2,14 @@
 
 use super::found::{Found, Scene};
 use super::rows::TorqueRows;
-use super::several::SeveralContacts;
+use super::several::{exceeds, SeveralContacts};
 
 /// Rounds until the contact links stand still; ten, as in Vorndamme 2017.
 const ROUNDS: usize = 10;
 /// Contacts that are solved for together: more would take too long.
 const MOST: usize = 6;
+/// Bodies on which one more contact is tried, best first.
+const TRIED: usize = 4;
 
 impl SeveralContacts {
     /// Forces on all of `bodies`, or on one more before them, that explain the torques but for `limit` and are
@@ -23,16 +25,13 @@ impl SeveralContacts {
         if found + tips == self.max_contacts || tips == MOST {
             return false;
         }
+        self.rank_one_more(scene, rows, limit);
         let mut best: Option<(f64, usize)> = None;
-        for before in 1..scene.robot.body_count() {
-            let carries = |tip: &usize| scene.region.chain(scene.robot, *tip).any(|joint| joint == before);
-            if self.bodies[..tips].contains(&before) || !self.bodies[..tips].iter().any(carries) {
-                continue;
-            }
-            self.bodies.push(before);
+        for index in 0..self.one_more.len() {
+            self.bodies.push(self.one_more[index].1);
             if let Some(misfit) = self.stack(scene, rows, limit) {
                 if best.is_none_or(|(least, _)| misfit < least) {
-                    best = Some((misfit, before));
+                    best = Some((misfit, self.one_more[index].1));
                 }
             }
             self.found.truncate(found);
@@ -43,6 +42,33 @@ impl SeveralContacts {
         self.stack(scene, rows, limit).is_some()
     }
 
+    /// The bodies before the tips on which one more wrench explains the torques best, by least squares alone, but for
+    /// `limit`.
+    fn rank_one_more(&mut self, scene: Scene, rows: &TorqueRows, limit: f64) {
+        let Self { one_more, stacked, bodies, work, .. } = self;
+        one_more.clear();
+        if !work.spend(stacked.work(bodies.len()) * 2) {
+            return;
+        }
+        stacked.estimate(scene, rows, bodies);
+        stacked.prepare_one_more();
+        for before in 1..scene.robot.body_count() {
+            let carries = |tip: &usize| scene.region.chain(scene.robot, *tip).any(|joint| joint == before);
+            if bodies.contains(&before) || !bodies.iter().any(carries) {
+                continue;
+            }
+            let Some(misfit) = stacked.misfit_with(scene, before) else { continue };
+            if exceeds(misfit, limit) {
+                continue;
+            }
+            let rank = one_more.partition_point(|(other, _)| *other <= misfit);
+            if rank < TRIED {
+                one_more.insert(rank, (misfit, before));
+                one_more.truncate(TRIED);
+            }
+        }
+    }
+
     /// Least squares for forces on `bodies`, or on bodies behind them that their lines hit; the misfit if they are
     /// determined and explain the torques but for `limit`.
     fn stack(&mut self, scene: Scene, rows: &TorqueRows, limit: f64) -> Option<f64> {
@@ -50,7 +76,8 @@ impl SeveralContacts {
         let mut bodies = std::mem::take(&mut self.bodies);
         let mut misfit = None;
         for _ in 0..ROUNDS {
-            if self.stacked.estimate(scene, rows, &bodies) > 0 {
+            let work = self.stacked.work(bodies.len());
+            if !self.work.spend(work) || self.stacked.estimate(scene, rows, &bodies) > 0 {
                 break;
             }
             let Some(left) = self.stacked.misfit(limit) else { break };
