@@ -252,6 +252,9 @@ impl ContactIsolator {
         self.set_rows(kinematics, None, true);
         let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
         let exact = self.several.solve_exactly(scene, &mut self.rows);
+        if exact {
+            self.several.narrow(self.rows.widest_threshold(&self.limit));
+        }
         if exact && self.several.verified {
             self.identify(kinematics, None);
             return self.report_several(kinematics);
@@ -292,6 +295,7 @@ impl ContactIsolator {
         self.set_rows(kinematics, None, true);
         let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
         self.several.peel_all(scene, &mut self.rows);
+        self.several.narrow(self.rows.widest_threshold(&self.limit));
         self.report_found_alone(kinematics);
         let Self { robot, tips, region, rows, limit, .. } = self;
         tips.find(robot, |k| region.feels[k] && rows.torque[k].abs() > limit[k]);
@@ -339,6 +343,9 @@ impl ContactIsolator {
         self.set_rows(kinematics, Some(root), true);
         let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
         let exact = self.several.solve_exactly(scene, &mut self.rows);
+        if exact {
+            self.several.narrow(self.rows.widest_threshold(&self.limit));
+        }
         if one_does && !(exact && self.several.verified) {
             return false;
         }

@@ -132,6 +132,12 @@ impl SeveralContacts {
         false
     }
 
+    /// The tolerances of an exact solution are wide for the sake of its numbers; the errors of the torques are not.
+    pub fn narrow(&mut self, share: f64) {
+        let pairs = self.solutions.iter_mut().flat_map(|solution| &mut solution.contacts);
+        self.found.iter_mut().chain(pairs).for_each(|found| found.wrench.narrow(share));
+    }
+
     /// The contacts among them that their own joints determine, one by one. Uses up `rows`.
     pub fn peel_all(&mut self, scene: Scene, rows: &mut TorqueRows) {
         self.clear();

@@ -27,6 +27,8 @@ pub(super) struct WrenchEstimate {
     /// Sum of squares that no wrench explains, in thresholds, and how many torques are redundant.
     unexplained: f64,
     redundant: usize,
+    /// Standard deviation of a torque in tolerances.
+    deviation: f64,
 }
 
 /// Velocity at `reference` and rotation that one unit of a joint's velocity gives the bodies behind it.
@@ -122,7 +124,7 @@ impl WrenchEstimate {
             root.row_mut(i).unscale_mut(LEVER);
         }
         let (force, moment) = split(solution);
-        Self { force, moment: moment / LEVER, reference, rank, root, unexplained, redundant }
+        Self { force, moment: moment / LEVER, reference, rank, root, unexplained, redundant, deviation: DEVIATION }
     }
 
     /// The point of the line of action nearest to `reference` (Vorndamme 2017, eq. 26), and its direction.
@@ -160,10 +162,15 @@ impl WrenchEstimate {
         [first, along.cross(&first)].map(|direction| direction * root.tr_mul(&direction).norm())
     }
 
+    /// For tolerances that were wider than what the errors of the torques are taken to be, by at least this share.
+    pub fn narrow(&mut self, share: f64) {
+        self.deviation = DEVIATION * share;
+    }
+
     /// Standard deviation of a torque in thresholds: more than [`DEVIATION`] where the torques contradict one force, and
     /// never less, since one or two redundant torques agree by chance.
     fn torque_deviation(&self) -> f64 {
-        self.misfit().max(DEVIATION)
+        self.misfit().max(self.deviation)
     }
 
     /// Sum of squares of what contradicts a single force without moment, in standard deviations of the torques, and
