@@ -45,7 +45,10 @@ def test_arms_locate_what_six_joints_determine_and_name_the_rest(name: str) -> N
     results = run(robot, points=60, seed=12)
     # Where the own joint feels the force, the link is right.
     silent = {"link only, own joint silent", "other link, own joint silent"}
-    assert outcomes(results) <= {"located", ENTERS_TWICE, UNCERTAIN, "link only, rank < 6", "not felt", "out of reach"} | silent
+    assert (
+        outcomes(results)
+        <= {"located", ENTERS_TWICE, UNCERTAIN, "link only, rank < 6", "not felt", "out of reach"} | silent
+    )
     exact = [result for result in results if result.outcomes["located"] + result.outcomes[ENTERS_TWICE]]
     located = [result.link for result in exact]
     before = {link: int(robot.jacobian(robot.neutral(), link).any(axis=0).sum()) for link in robot.link_names}

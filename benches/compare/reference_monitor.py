@@ -76,6 +76,12 @@ class ReferenceMonitor:
             for other in self.behind[joint]:
                 self.velocities_behind[k, self.own[other]] = True
 
+    def reset(self) -> None:
+        """Forgets all ticks."""
+        self.observer = ReferenceObserver(self.model, dt=self.dt)
+        self.data = self.observer.data
+        self.remaining.fill(-1.0)
+
     def update(self, q: FloatArray, v: FloatArray, tau: FloatArray) -> ReferenceReport:
         """One control tick; `tau` is `(nv,)`."""
         torque = self.observer.update(q, v, tau)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -65,6 +66,25 @@ def panda() -> tuple[str, cs.Robot, Any]:
         raise FileNotFoundError(f"{PANDA} is absent: install example-robot-data")
     robot = cs.Robot.from_urdf(PANDA, package_dirs=EXAMPLE_SHARE)
     return "panda", robot, pin.buildModelFromUrdf(str(PANDA))
+
+
+def example(path: str, *, floating_base: bool, locked: Sequence[str] = ()) -> tuple[cs.Robot, Any]:
+    """A robot of example-robot-data and its Pinocchio model, the `locked` joints at zero.
+
+    Raises:
+        FileNotFoundError: example-robot-data is not installed.
+    """
+    file = EXAMPLE_SHARE / "example-robot-data/robots" / path
+    if not file.exists():
+        raise FileNotFoundError(f"{file} is absent: install example-robot-data")
+    robot = cs.Robot.from_urdf(
+        file, package_dirs=EXAMPLE_SHARE, floating_base=floating_base, locked_joints=list(locked) or None
+    )
+    base = [pin.JointModelFreeFlyer()] if floating_base else []
+    model = pin.buildModelFromUrdf(str(file), *base)
+    if locked:
+        model = pin.buildReducedModel(model, [model.getJointId(name) for name in locked], pin.neutral(model))
+    return robot, model
 
 
 def random_posture(model: Any, rng: np.random.Generator) -> FloatArray:

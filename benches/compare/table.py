@@ -7,7 +7,7 @@ from typing import Any
 
 from .timing import Comparison, Timing
 
-HEADER = ("task", "", "us", "10 .. 90 %", "ratio", "10 .. 90 %", "limit", "")
+HEADER = ("task", "", "us", "10 .. 90 %", "99.9 %", "max", "ratio", "10 .. 90 %", "limit", "")
 VERDICTS = {None: "", True: "pass", False: "FAIL"}
 
 
@@ -25,7 +25,7 @@ def show(comparisons: Sequence[Comparison], about: dict[str, str]) -> None:
     table = Table(*HEADER, box=None, pad_edge=False)
     for column in table.columns:
         column.no_wrap = True
-    for column in table.columns[2:6]:
+    for column in table.columns[2:8]:
         column.justify = "right"
     for row in rows:
         table.add_row(*row)
@@ -38,7 +38,7 @@ def _show_plain(rows: Sequence[Sequence[str]]) -> None:
     widths = _widths(rows)
     for row in [HEADER, *rows]:
         cells = (
-            cell.rjust(width) if 2 <= k < 6 else cell.ljust(width)
+            cell.rjust(width) if 2 <= k < 8 else cell.ljust(width)
             for k, (cell, width) in enumerate(zip(row, widths, strict=True))
         )
         print("  ".join(cells).rstrip())
@@ -55,15 +55,23 @@ def _rows(comparison: Comparison) -> list[tuple[str, ...]]:
         limits.append(f"<= {comparison.max_us:g} us")
     if comparison.min_ratio is not None:
         limits.append(f">= {comparison.min_ratio:g}x")
+    if comparison.max_worst_us is not None:
+        limits.append(f"max <= {comparison.max_worst_us:g} us")
     ends = ("", "", ", ".join(limits), VERDICTS[comparison.passed])
-    first = (comparison.task, ours.name, _us(ours.median), _span(ours.spread), *ends)
+    first = (comparison.task, ours.name, *_times(comparison, ours), *ends)
     return [first, *(_peer_row(comparison, timing) for timing in comparison.timings[1:])]
 
 
 def _peer_row(comparison: Comparison, timing: Timing) -> tuple[str, ...]:
     low, high = comparison.ratio_spread(timing)
     ratio, spread = f"{comparison.ratio(timing):.1f}", f"{low:.1f} .. {high:.1f}"
-    return ("", timing.name, _us(timing.median), _span(timing.spread), ratio, spread, "", "")
+    return ("", timing.name, *_times(comparison, timing), ratio, spread, "", "")
+
+
+def _times(comparison: Comparison, timing: Timing) -> tuple[str, ...]:
+    """Median, spread and tail; samples that are means of many calls have no tail worth printing."""
+    tail = ("", "") if comparison.max_worst_us is None else tuple(_us(value) for value in timing.tail)
+    return (_us(timing.median), _span(timing.spread), *tail)
 
 
 def _us(value: float) -> str:
@@ -85,6 +93,7 @@ def _comparison_json(comparison: Comparison) -> dict[str, Any]:
             "name": timing.name,
             "median_us": timing.median,
             "spread_us": timing.spread,
+            "tail_us": timing.tail if comparison.max_worst_us is not None else None,
             "ratio": comparison.ratio(timing),
             "ratio_spread": comparison.ratio_spread(timing),
         }
@@ -95,5 +104,6 @@ def _comparison_json(comparison: Comparison) -> dict[str, Any]:
         "timings": timings,
         "max_us": comparison.max_us,
         "min_ratio": comparison.min_ratio,
+        "max_worst_us": comparison.max_worst_us,
         "passed": comparison.passed,
     }
