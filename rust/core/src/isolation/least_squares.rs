@@ -138,10 +138,17 @@ impl LeastSquares {
         x[self.pivots[column]] = 1.0;
     }
 
-    /// The `index`-th column of a root of the solution's covariance (for rows of unit variance), into `x`.
-    pub fn covariance_root(&self, index: usize, x: &mut [f64]) {
-        x[..self.columns].fill(0.0);
-        self.back_substitute(x, |row| f64::from(row == index));
+    /// The row of one unknown in a root of the solution's covariance (for rows of unit variance), into `x`: as many
+    /// entries as the rank. Zeros for an unknown that the rows leave open.
+    pub fn covariance_root_row(&self, unknown: usize, x: &mut [f64]) {
+        x[..self.rank].fill(0.0);
+        let Some(place) = self.pivots[..self.rank].iter().position(|pivot| *pivot == unknown) else { return };
+        // A row of the triangle's inverse: forward substitution on its transpose.
+        for column in place..self.rank {
+            let above = &self.entries[column * self.capacity + place..column * self.capacity + column];
+            let sum: f64 = above.iter().zip(&x[place..column]).map(|(r, y)| r * y).sum();
+            x[column] = (f64::from(column == place) - sum) / self.entries[column * self.capacity + column];
+        }
     }
 
     /// Solves the triangle for a right side.
@@ -209,12 +216,12 @@ mod tests {
             if deficit == 0 {
                 let normal = matrix.tr_mul(&matrix).cholesky().expect("of full rank");
                 prop_assert!((DVector::from_column_slice(&x) - normal.solve(&matrix.tr_mul(&rhs))).norm() < 1e-6);
-                let mut covariance = DMatrix::zeros(7, 7);
-                for index in 0..7 {
-                    system.covariance_root(index, &mut x);
-                    let root = DVector::from_column_slice(&x);
-                    covariance += &root * root.transpose();
+                let mut root = DMatrix::zeros(7, 7);
+                for unknown in 0..7 {
+                    system.covariance_root_row(unknown, &mut x);
+                    root.row_mut(unknown).copy_from(&DVector::from_column_slice(&x).transpose());
                 }
+                let covariance = &root * root.transpose();
                 let identity = covariance * matrix.tr_mul(&matrix);
                 prop_assert!((identity - DMatrix::identity(7, 7)).norm() < 1e-4);
             }

@@ -20,6 +20,8 @@ pub(super) struct Stacked {
     pub(super) system: LeastSquares,
     solution: Vec<f64>,
     direction: Vec<f64>,
+    /// Six rows of a root of the covariance.
+    root_rows: Vec<f64>,
     pub(super) contacts: usize,
     unexplained: f64,
     pub(super) rows: Vec<Row>,
@@ -46,6 +48,7 @@ impl Stacked {
             system: LeastSquares::new(rows, unknowns),
             solution: vec![0.0; unknowns],
             direction: vec![0.0; unknowns],
+            root_rows: vec![0.0; 6 * unknowns.max(1)],
             contacts: 0,
             unexplained: 0.0,
             rows: Vec::with_capacity(rows),
@@ -79,7 +82,8 @@ impl Stacked {
     /// Multiplications of an estimate of so many wrenches.
     pub fn work(&self, contacts: usize) -> usize {
         let columns = 6 * contacts;
-        self.rows.capacity() * columns * columns
+        // The factorisation, and six rows of the covariance's root for each contact.
+        (self.rows.capacity() + columns) * columns * columns
     }
 
     fn add_row(&mut self, joint: Option<usize>, axis: &Vector6<f64>, value: f64, weight: f64) {
@@ -109,12 +113,13 @@ impl Stacked {
             let size = |x: &[f64]| x.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
             open += usize::from(size(&self.direction[block.clone()]) > UNTOUCHED * size(&self.direction));
         }
-        let mut covariance = Matrix6::zeros();
-        for column in 0..self.system.rank() {
-            self.system.covariance_root(column, &mut self.direction);
-            let root = Vector6::from_column_slice(&self.direction[block.clone()]);
-            covariance += root * root.transpose();
+        let rank = self.system.rank();
+        for (unknown, row) in block.clone().zip(self.root_rows.chunks_exact_mut(rank.max(1))) {
+            self.system.covariance_root_row(unknown, row);
         }
+        let rows: [&[f64]; 6] = std::array::from_fn(|i| &self.root_rows[i * rank..(i + 1) * rank]);
+        let covariance =
+            Matrix6::from_fn(|i, j| rows[i].iter().zip(rows[j]).map(|(a, b)| a * b).sum::<f64>());
         let root = covariance
             .cholesky()
             .map_or_else(|| Matrix6::from_diagonal(&covariance.diagonal().map(f64::sqrt)), |c| c.l());
