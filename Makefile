@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test lint types rust-test python-test bench clean toolchain install
+.PHONY: demo test lint types rust-test python-test shared-test bench clean toolchain install
 
 demo: EXTRAS := demo
 demo: install
@@ -22,12 +22,18 @@ types: install
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest contactsense._core
 
+# The same random cases in every run; another seed draws others.
+rust-test: export PROPTEST_RNG_SEED ?= 1
 rust-test: toolchain
 	cargo test --workspace --release --quiet
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --release --quiet
 
 python-test: install
-	$(BIN)/python -m pytest -q
+	$(BIN)/python -m pytest -q --durations=25
+
+# Tests of robots and logs that are not part of the project, in CONTACTSENSE_SHARED or ../shared.
+shared-test: install
+	$(BIN)/python -m pytest -q --durations=10 -m shared
 
 bench: EXTRAS := bench
 bench: install

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 import pytest
+from robots import SHARED
 
 ROOT = Path(__file__).resolve().parents[1]
 DESCRIPTIONS = ROOT / "python" / "contactsense" / "descriptions"
-SHARED = ROOT.parent / "shared" / "robots"
 ROBOTS = ("iiwa14", "atlas")
 SIZES = {
     "box": ("size",),
@@ -175,14 +175,13 @@ def test_atlas_sides_mirror_each_other() -> None:
                 np.testing.assert_array_equal(size_a, size_b)
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize(
     ("name", "other"),
     [("iiwa14", "iiwa14/iiwa14.urdf"), ("atlas", "atlas/atlas_v5_simple_shapes.urdf")],
 )
 def test_dynamics_follow_the_published_figures(name: str, other: str) -> None:
-    path = SHARED / other
-    if not path.exists():
-        pytest.skip("published figures are not beside the project (../shared/robots)")
+    path = SHARED / "robots" / other
     floating = name == "atlas"
     own, published = _own(name, floating=floating), _model(path, floating=floating)
     assert list(own.names) == list(published.names)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 import pytest
-from robots import ATLAS, EXAMPLES, IIWA14, RobotFile
+from robots import ATLAS, EXAMPLES, IIWA14, RobotFile, parameters
 
 import contactsense as cs
 
@@ -71,7 +71,7 @@ def compare(robot: cs.Robot, model: pin.Model, seed: int) -> None:
             assert_close(robot.jacobian(q, frame.name, point), moved, frame.name)
 
 
-@pytest.mark.parametrize("file", [*EXAMPLES, *ATLAS, IIWA14], ids=lambda file: file.name)
+@pytest.mark.parametrize("file", parameters([*EXAMPLES, *ATLAS, IIWA14]))
 def test_agrees_with_pinocchio(file: RobotFile) -> None:
     compare(file.robot(), file.model(), seed=1)
 

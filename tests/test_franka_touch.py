@@ -147,14 +147,13 @@ def test_bad_data_is_refused(tmp_path: Path, robot: cs.Robot, capsys: pytest.Cap
 
 @pytest.fixture(scope="module")
 def real() -> study.Study:
-    if not REAL.is_dir():
-        pytest.skip(f"{REAL} is absent: the real logs are not part of the project")
     try:
         return study.run(REAL)
     except MissingExtraError as missing:
         pytest.skip(str(missing))
 
 
+@pytest.mark.shared
 def test_real_touches_are_all_felt(real: study.Study) -> None:
     for evaluation in (real.measured, real.vendor):
         figures = evaluation.overall
@@ -165,6 +164,7 @@ def test_real_touches_are_all_felt(real: study.Study) -> None:
         assert figures.delay_max < 0.1
 
 
+@pytest.mark.shared
 def test_real_links_are_named(real: study.Study) -> None:
     # Measured: exact 75 % of the held out, 71 % of all; within one 99 %. Last joint over 0.2 Nm: 49 %.
     assert real.measured.held_out.exact > 0.68
@@ -175,12 +175,14 @@ def test_real_links_are_named(real: study.Study) -> None:
     assert real.vendor.overall.exact > 0.7
 
 
+@pytest.mark.shared
 def test_stored_settings_are_those_chosen(real: study.Study) -> None:
     robot = study.study.panda()
     assert study.choose_settings(robot, real.logs, "measured") == study.MEASURED
     assert study.choose_settings(robot, real.logs, "vendor") == study.VENDOR
 
 
+@pytest.mark.shared
 def test_json_and_picture(real: study.Study, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     picture = tmp_path / "touches.png"
     assert run_cli(["study", "franka_touch", "--data", str(REAL), "--json", "--png", str(picture)]) == 0

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import importlib.util
-import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pinocchio as pin
 import pytest
-from robots import ATLAS, BY_NAME, RobotFile
+from robots import BY_NAME, RobotFile, parameters
 from sensor_models import joints_by_child, moving_and_fixed_links
 
 import contactsense as cs
@@ -18,10 +17,10 @@ import contactsense as cs
 if importlib.util.find_spec("idyntree") is None:
     pytest.skip("idyntree is not installed (it has wheels for Linux only)", allow_module_level=True)
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from benches.compare.idyntree_estimator import IdyntreeEstimator, on_submodels
 
-FILES = [*(BY_NAME[name] for name in ("panda", "ur5", "xarm7", "talos", "g1", "icub", "anymal")), ATLAS[1]]
+NAMES = ("panda", "ur5", "xarm7", "talos", "g1", "icub", "anymal", "atlas_v5")
+FILES = parameters(BY_NAME[name] for name in NAMES)
 
 
 def parents_of(file: RobotFile, links: list[str]) -> list[int | None]:
@@ -48,7 +47,7 @@ def links_with_mass(path: Path) -> set[str]:
 
 
 @pytest.mark.parametrize("kind", ["moving", "fixed"])
-@pytest.mark.parametrize("file", FILES, ids=lambda file: file.name)
+@pytest.mark.parametrize("file", FILES)
 def test_wrenches_agree(file: RobotFile, kind: str) -> None:
     rng = np.random.default_rng(1)
     moving, fixed = moving_and_fixed_links(file.require())

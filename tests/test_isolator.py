@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from robots import BY_NAME
+from robots import parameters, robot_named
 
 import contactsense as cs
 from contactsense.studies.sampling import random_configuration
@@ -15,10 +15,6 @@ from contactsense.studies.single_contacts import ENTERS_TWICE, UNCERTAIN, LinkRe
 
 ARMS = ("iiwa14", "panda", "ur5", "iiwa14_mesh", "xarm7")
 HUMANOIDS = ("atlas", "atlas_v5", "atlas_hull", "talos", "g1")
-
-
-def robot_named(name: str) -> cs.Robot:
-    return BY_NAME[name].robot() if name in BY_NAME else cs.Robot.named(name)
 
 
 def torque(robot: cs.Robot, q: np.ndarray, link: str, point: np.ndarray, force: np.ndarray) -> np.ndarray:
@@ -29,7 +25,7 @@ def outcomes(results: list[LinkResult]) -> set[str]:
     return set().union(*(result.outcomes for result in results))
 
 
-@pytest.mark.parametrize("name", HUMANOIDS)
+@pytest.mark.parametrize("name", parameters(HUMANOIDS))
 def test_every_reachable_contact_of_a_floating_base_is_located(name: str) -> None:
     results = run(robot_named(name), points=30, seed=11)
     silent = {"link only, own joint silent"}
@@ -39,7 +35,7 @@ def test_every_reachable_contact_of_a_floating_base_is_located(name: str) -> Non
     assert sum(result.outcomes[kind] for result in results for kind in silent) <= 0.01 * exact
 
 
-@pytest.mark.parametrize("name", ARMS)
+@pytest.mark.parametrize("name", parameters(ARMS))
 def test_arms_locate_what_six_joints_determine_and_name_the_rest(name: str) -> None:
     robot = robot_named(name)
     results = run(robot, points=60, seed=12)

@@ -4,7 +4,7 @@ import coal
 import numpy as np
 import pinocchio as pin
 import pytest
-from robot_files import PACKAGE_DIRS, ROBOTS
+from robots import PACKAGE_DIRS, PUBLISHED
 from urdf_text import ARM, joint, link, robot, shape
 
 from contactsense.errors import GeometryError, InputError, ModelError
@@ -39,7 +39,7 @@ def mesh():
     return model
 
 
-@pytest.mark.parametrize("path", ROBOTS)
+@pytest.mark.parametrize("path", PUBLISHED)
 def test_agrees_with_the_urdf(path):
     # Pinocchio finds no meshes by relative names.
     text = path.read_text().replace('filename="meshes/', f'filename="file://{path.parent}/meshes/')

@@ -3,7 +3,7 @@
 import numpy as np
 import pinocchio as pin
 import pytest
-from robot_files import PACKAGE_DIRS, ROBOTS, example
+from robots import PACKAGE_DIRS, PUBLISHED, example
 
 from contactsense.errors import GeometryError, ModelError
 from contactsense.loading.describe_urdf import describe_urdf
@@ -41,7 +41,7 @@ def angles(model, description, q):
 
 
 @pytest.mark.parametrize("floating_base", [False, True])
-@pytest.mark.parametrize("path", ROBOTS)
+@pytest.mark.parametrize("path", PUBLISHED)
 def test_agrees_with_pinocchio(path, floating_base):
     root = (pin.JointModelFreeFlyer(),) if floating_base else ()
     model = pin.buildModelFromUrdf(str(path), *root)

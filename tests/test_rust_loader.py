@@ -9,11 +9,10 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from bad_models import BAD_MODELS
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from robot_files import PACKAGE_DIRS, ROBOTS
-from robots import ATLAS, EXAMPLES
-from test_urdf_checks import BAD_MODELS
+from robots import ATLAS, EXAMPLES, PACKAGE_DIRS, PUBLISHED, parameters
 from urdf_text import ARM, SOLID, joint, link, robot, shape, write
 
 import contactsense as cs
@@ -114,22 +113,22 @@ def without_shapes(path, folder):
     return copy
 
 
-@pytest.mark.parametrize("path", ROBOTS)
+@pytest.mark.parametrize("path", PUBLISHED)
 def test_published_robots(path):
     assert_same(*load_both(path, package_dirs=PACKAGE_DIRS), frames_of(path))
 
 
-@pytest.mark.parametrize("path", ROBOTS)
+@pytest.mark.parametrize("path", PUBLISHED)
 def test_floating_base(path, tmp_path):
     assert_same(*load_both(without_shapes(path, tmp_path), floating_base=True), frames_of(path))
 
 
-@pytest.mark.parametrize("file", [*EXAMPLES, *ATLAS], ids=lambda file: file.name)
+@pytest.mark.parametrize("file", parameters([*EXAMPLES, *ATLAS]))
 def test_visual_geometry(file):
     assert_same(*load_both(file.require().path, package_dirs=PACKAGE_DIRS, geometry="visual"))
 
 
-@pytest.mark.parametrize("path", ROBOTS)
+@pytest.mark.parametrize("path", PUBLISHED)
 def test_locked_joints(path, tmp_path):
     copy = without_shapes(path, tmp_path)
     names = load_both(copy)[1].joint_names

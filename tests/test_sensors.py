@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 import pytest
-from robots import ATLAS, BY_NAME, EXAMPLES, RobotFile
+from robots import ATLAS, BY_NAME, EXAMPLES, RobotFile, parameters
 from sensor_models import SensedModel, adjoint, moving_and_fixed_links
 
 import contactsense as cs
 from contactsense import _core
 from contactsense.robot import description_file
 
-FILES = [*EXAMPLES, ATLAS[1]]
+FILES = parameters([*EXAMPLES, ATLAS[1]])
 
 
 def scaled(error: np.ndarray, *sizes: np.ndarray) -> float:
@@ -28,7 +28,7 @@ def choose(file: RobotFile, count: int, seed: int) -> list[str]:
 
 @pytest.mark.parametrize("push", [0.0, 50.0])
 @pytest.mark.parametrize("conventions", ["load", "support", "mixed"])
-@pytest.mark.parametrize("file", FILES, ids=lambda file: file.name)
+@pytest.mark.parametrize("file", FILES)
 def test_against_joint_forces(file: RobotFile, conventions: str, push: float) -> None:
     """Of readings from Pinocchio's joint forces, the forces that push behind the sensor are left."""
     model = SensedModel(file, choose(file, 5, 1), seed=2, conventions=conventions)
@@ -41,7 +41,7 @@ def test_against_joint_forces(file: RobotFile, conventions: str, push: float) ->
         assert scaled(external - expected, readings) < 1e-11
 
 
-@pytest.mark.parametrize("file", FILES, ids=lambda file: file.name)
+@pytest.mark.parametrize("file", FILES)
 def test_against_the_direct_sum(file: RobotFile) -> None:
     """Eq. 19 body by body, at every moving joint: nested sensors of all depths at once."""
     moving, _ = moving_and_fixed_links(file.require())
@@ -119,7 +119,7 @@ def test_fixed_joint_sensor_carries_only_what_is_behind() -> None:
     np.testing.assert_allclose(weights, [1.465522 + fingers, 0.73 + fingers], rtol=1e-9)
 
 
-@pytest.mark.parametrize("file", FILES, ids=lambda file: file.name)
+@pytest.mark.parametrize("file", FILES)
 def test_loaders_agree(file: RobotFile) -> None:
     """Link trees and the links' own inertias, seen by a sensor at every link."""
     moving, fixed = moving_and_fixed_links(file.require())

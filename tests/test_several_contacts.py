@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from robots import BY_NAME
+from robots import parameters, robot_named
 
 import contactsense as cs
 from contactsense.studies.sampling import Touch, random_configuration, touches_in_pose
@@ -17,10 +17,6 @@ from contactsense.studies.vorndamme2017 import rank_deficit
 
 CONE = np.deg2rad(40.0)
 LINKS = ("l_hand", "r_hand", "l_foot", "r_foot", "l_clav", "r_clav", "l_uglut", "r_uglut", "utorso")
-
-
-def robot_named(name: str) -> cs.Robot:
-    return BY_NAME[name].robot() if name in BY_NAME else cs.Robot.named(name)
 
 
 def push(robot: cs.Robot, q: np.ndarray, link: str, rng: np.random.Generator) -> Touch | None:
@@ -84,7 +80,7 @@ def scenes(robot: cs.Robot, groups: list[tuple[str, ...]], seed: int) -> list[tu
     return found
 
 
-@pytest.mark.parametrize("name", ["atlas", "atlas_v5", "talos", "g1"])
+@pytest.mark.parametrize("name", parameters(["atlas", "atlas_v5", "talos", "g1"]))
 def test_two_contacts_are_found_where_six_joints_lie_between_them(name: str) -> None:
     robot = robot_named(name)
     q = robot.neutral()

@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install contactsense[sim]")
 
-from touch_robots import packaged, panda
+from robots import packaged, panda
 
 from contactsense.errors import InputError
 from contactsense.sim import (

@@ -10,7 +10,7 @@ import pytest
 pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install contactsense[sim]")
 
 import mujoco
-from touch_robots import convex_parts, meshes, packaged, rotation
+from robots import convex_parts, meshes, packaged, rotation
 
 from contactsense.errors import InputError
 from contactsense.sim import (
@@ -117,7 +117,7 @@ def _near(robot, link, q, rng) -> list[Obstacle]:
     ]
 
 
-@pytest.mark.parametrize("which", [packaged, meshes])
+@pytest.mark.parametrize("which", [packaged, pytest.param(meshes, marks=pytest.mark.shared)])
 def test_nothing_is_deeper(which) -> None:
     robot, _ = which()
     rng = np.random.default_rng(3)
@@ -142,6 +142,7 @@ def test_nothing_is_deeper(which) -> None:
     assert judged >= 15
 
 
+@pytest.mark.shared
 def test_distances_agree_with_mujoco_on_convex_parts() -> None:
     robot, _ = meshes()
     rng = np.random.default_rng(4)

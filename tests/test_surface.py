@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from robots import BY_NAME
+from robots import BY_NAME, parameters
 
 import contactsense as cs
 
@@ -109,7 +109,7 @@ def test_rays_of_a_closed_mesh_enter_as_often_as_they_leave(tmp_path: Path, bump
         assert odd_counts(surface, aim - 2.0 * directions, directions) == 0, what
 
 
-@pytest.mark.parametrize("name", ["panda", "iiwa14_mesh", "talos", "atlas_hull"])
+@pytest.mark.parametrize("name", parameters(["panda", "iiwa14_mesh", "talos", "atlas_hull"]))
 def test_rays_through_vertices_of_real_meshes(name: str) -> None:
     robot = BY_NAME[name].robot()
     rng = np.random.default_rng(1)
