@@ -71,6 +71,26 @@ def test_report_names_the_machine_and_versions(report: dict) -> None:
     assert {"cpu", "cores", "python", "numpy", "pin", "contactsense"} <= set(report["about"])
 
 
+@pytest.mark.parametrize("name", ["observer", "compensation"])
+def test_comparisons_without_the_extra_run(name: str) -> None:
+    """What the other tests skip without the extra `bench` runs here as far as it needs nothing of it."""
+    if name == "compensation":
+        pytest.importorskip("idyntree", reason="idyntree has wheels for Linux only")
+    code = (
+        "import sys, time\n"
+        "for absent in ('trimesh', 'scipy', 'fcpw', 'igl', 'embreex'):\n"
+        "    sys.modules[absent] = None\n"
+        f"from benches.compare import {name}\n"
+        "from benches.compare.timing import Pace\n"
+        f"print(len({name}.compare(Pace(3, 0.002, 2, time.process_time))))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=300, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert int(done.stdout) >= LEAST[name]
+
+
 def test_unknown_comparison_is_refused() -> None:
     done = run("nothing")
     assert done.returncode == 2

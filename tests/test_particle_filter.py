@@ -56,20 +56,32 @@ def error(estimate: cs.ContactEstimate, run: sim.ContactRun) -> float:
     return float(np.linalg.norm(estimate.point - run.point[-1]))
 
 
+@pytest.mark.parametrize("which", ARMS)
 @pytest.mark.parametrize("noise", [0.0, 0.1])
-@pytest.mark.parametrize("link", [3, 4, 5, 6, 7])
-def test_a_ball_is_found(link: int, noise: float) -> None:
-    runs = [explored(link, seed) for seed in (41, 42, 43)]
-    estimates = [follow(run, noise) for run in runs]
-    errors = [error(*pair) for pair in zip(estimates, runs, strict=True)]
-    assert [estimate.link for estimate in estimates] == [run.link[-1] for run in runs]
-    assert np.mean(errors) < (0.015 if link > 3 else 0.04), errors
-    for estimate, run in zip(estimates, runs, strict=True):
+@pytest.mark.parametrize("link", [4, 5, 6, 7])
+def test_a_ball_is_found_on_the_outer_links(link: int, noise: float, which: Which) -> None:
+    # Over eight seeds at most 6 mm off, the force by 9 %.
+    runs = [explored(link, seed, which=which) for seed in (41, 42, 43)]
+    for run in runs:
+        estimate = follow(run, noise, which()[0])
         force = run.force[-1]
-        assert np.linalg.norm(estimate.force - force) < (0.1 + 2 * noise) * np.linalg.norm(force)
+        assert estimate.link == run.link[-1]
+        assert error(estimate, run) < 0.015
+        assert np.linalg.norm(estimate.force - force) < (0.1 + noise) * np.linalg.norm(force)
         assert estimate.contact
         assert estimate.explained
         assert estimate.event == "continued"
+
+
+@pytest.mark.parametrize("which", ARMS)
+@pytest.mark.parametrize("noise", [0.0, 0.1])
+def test_three_torques_give_the_link_and_about_the_point(noise: float, which: Which) -> None:
+    # Over eight seeds a median of 17 mm, at most 59 mm.
+    runs = [explored(3, seed, which=which) for seed in (41, 42, 43, 1041, 1042)]
+    estimates = [follow(run, noise, which()[0]) for run in runs]
+    assert [estimate.link for estimate in estimates] == [run.link[-1] for run in runs]
+    assert np.median([error(*pair) for pair in zip(estimates, runs, strict=True)]) < 0.04
+    assert all(estimate.contact and estimate.explained for estimate in estimates)
 
 
 def test_the_obstacles_stiffness_is_found() -> None:
