@@ -5,12 +5,16 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
 from contactsense import __version__
+from contactsense._pictures import picture_file
 from contactsense.cli.app import run
+from contactsense.studies.bimbo2019.study import Trial
 
 STUDY = ["study", "franka_touch"]
 
@@ -46,6 +50,9 @@ def test_an_error_is_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         ("typer", ["--help"], "contactsense[cli]"),
         ("rich", ["--help"], "contactsense[cli]"),
         ("matplotlib", [*STUDY, "--data", ".", "--png", "x.png"], "contactsense[study]"),
+        ("mujoco", ["study", "bimbo2019"], "contactsense[study]"),
+        ("mujoco", ["study", "vorndamme2017"], "contactsense[study]"),
+        ("mujoco", ["demo"], "contactsense[demo]"),
     ],
 )
 def test_a_missing_package_is_named(hidden: str, arguments: list[str], extra: str) -> None:
@@ -74,3 +81,172 @@ def test_single_contacts_prints_a_table(capsys: pytest.CaptureFixture[str]) -> N
 def test_single_contacts_refuses(options: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["study", "single_contacts", *options]) == 2
     assert "contactsense:" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "study",
+    [
+        ["single_contacts", "--robot", "iiwa14", "--points", "1"],
+        ["vorndamme2017", "--singles", "1", "--pairs", "1", "--fives", "1", "--hits", "1"],
+        ["bimbo2019", "--trials", "1"],
+    ],
+)
+def test_negative_seeds_are_refused(study: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["study", *study, "--seed", "-1"]) == 2
+    assert capsys.readouterr().err.startswith("contactsense: seed: must not be negative")
+
+
+def _refused_at_once(arguments: list[str], monkeypatch: pytest.MonkeyPatch) -> int:
+    """The exit code of a command whose work must not begin."""
+
+    def work(*_: object, **__: object) -> None:
+        raise AssertionError("the work began")
+
+    for module in (
+        "demo.command",
+        "studies.franka_touch",
+        "studies.vorndamme2017.study",
+        "studies.bimbo2019.study",
+    ):
+        monkeypatch.setattr(f"contactsense.{module}.run", work)
+    return run(arguments)
+
+
+FOLDERS = [["study", name] for name in ("vorndamme2017", "bimbo2019")]
+
+
+@pytest.mark.parametrize(
+    ("command", "option"),
+    [(["demo"], "out"), ([*STUDY, "--data", "."], "png"), *((folder, "png") for folder in FOLDERS)],
+)
+def test_where_pictures_go_is_checked_first(
+    command: list[str],
+    option: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    (tmp_path / "file.png").touch()
+    if command in FOLDERS:
+        targets = ["file.png", "file.png/folder"]
+    else:
+        (tmp_path / "folder").mkdir()
+        targets = ["folder", "absent/a.png", "a.nosuch"]
+    for target in targets:
+        path = str(tmp_path / target)
+        assert _refused_at_once([*command, f"--{option}", path], monkeypatch) == 2
+        told = capsys.readouterr().err
+        assert told.startswith(f"contactsense: {option}: ")
+        assert path in told
+        assert told.count("\n") == 1
+    assert not (tmp_path / "folder.png").exists()
+
+
+def test_a_picture_without_suffix_is_a_png(tmp_path: Path) -> None:
+    assert picture_file("out", tmp_path / "a") == tmp_path / "a.png"
+    assert picture_file("out", tmp_path / "a.svg") == tmp_path / "a.svg"
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["--help"], ["--version"], ["study", "single_contacts", "--robot", "iiwa14", "--points", "1"]],
+)
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+def test_a_full_output_is_a_line(arguments: list[str]) -> None:
+    with open("/dev/full", "w") as full:
+        ended = subprocess.run(
+            [sys.executable, "-m", "contactsense.cli", *arguments],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+    assert ended.returncode == 1
+    assert ended.stderr.startswith("contactsense: cannot write the output: ")
+    assert ended.stderr.count("\n") == 1
+
+
+def test_an_interrupt_is_a_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("contactsense.studies.single_contacts.run", interrupt)
+    assert run(["study", "single_contacts", "--robot", "iiwa14"]) == 130
+    assert capsys.readouterr().err == "contactsense: interrupted\n"
+
+
+@pytest.mark.parametrize(
+    ("study", "stage", "figures"),
+    [
+        ("vorndamme2017", "isolating", "--json"),
+        ("vorndamme2017", "isolating", "One contact"),
+        ("vorndamme2017", "hits over time", "A hit of 20 ms"),
+        ("bimbo2019", "trials", "--json"),
+        ("bimbo2019", "trials", "estimate says of itself"),
+    ],
+)
+def test_an_interrupted_study_shows_what_it_has(
+    study: str,
+    stage: str,
+    figures: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Ctrl-C after the first results of a stage."""
+    sizes = {
+        "vorndamme2017": "--singles 2 --pairs 1 --fives 1 --hits 1",
+        "bimbo2019": "--trials 2 --particles 50 --experiment random --link iiwa_link_7",
+    }[study]
+
+    @contextmanager
+    def progress() -> Iterator[Callable[[str, int, int], None]]:
+        def show(name: str, done: int, total: int) -> None:
+            if name == stage and done == 2:
+                raise KeyboardInterrupt
+
+        yield show
+
+    def trial(item: tuple[object, str, str, int]) -> Trial:
+        return Trial(*item[1:], outcomes=())
+
+    monkeypatch.setattr("contactsense.studies.bimbo2019.study._trial", trial)  # the real ones take seconds
+    monkeypatch.setattr("contactsense.cli.study._progress", progress)
+    command = ["study", study, *sizes.split(), "--processes", "1"]
+    assert run([*command, "--json"] if figures == "--json" else command) == 130
+    told = capsys.readouterr()
+    assert told.err == "contactsense: interrupted\n"
+    if figures == "--json":
+        assert json.loads(told.out)["complete"] is False
+    else:
+        assert figures in told.out
+
+
+INTERRUPTED = """
+import os, signal, sys, threading, time
+from contactsense.studies.parallel import collect
+
+def interrupt(item):
+    # The whole group, as a terminal does, or this process alone.
+    os.killpg(0, signal.SIGINT) if sys.argv[1] == "group" else os.kill(os.getpid(), signal.SIGINT)
+
+if __name__ == "__main__":
+    print(*collect(time.sleep, [0.1, 0.0, 10_000.0, 10_000.0], 2, interrupt), flush=True)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+@pytest.mark.parametrize("whom", ["group", "parent"])
+def test_an_interrupt_stops_other_processes(whom: str, tmp_path: Path) -> None:
+    """Items of hours are not waited for, and no worker stays or complains."""
+    script = tmp_path / "study.py"
+    script.write_text(INTERRUPTED)
+    ended = subprocess.run(
+        [sys.executable, str(script), whom],
+        capture_output=True,  # ends only when all who hold the pipe have ended
+        text=True,
+        timeout=60,
+        check=False,
+        start_new_session=True,
+    )
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "[] False\n", "")

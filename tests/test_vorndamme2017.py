@@ -42,7 +42,7 @@ def robot() -> cs.Robot:
 
 
 def verdicts(scenes: list[Scene], setting: Setting, seed: int = 0) -> list[Verdict]:
-    (found,) = run_tasks([Task(setting, scenes, 0, seed)], processes=1)
+    (found,), _ = run_tasks([Task(setting, scenes, 0, seed)], processes=1)
     return found
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+
 from .errors import ContactSenseError
 
 
@@ -10,3 +12,12 @@ class MissingExtraError(ContactSenseError, ImportError):
 
     def __init__(self, package: str, extra: str) -> None:
         super().__init__(f"{package} is not installed; get it with: pip install 'contactsense[{extra}]'")
+
+
+def require(extra: str, *packages: str) -> None:
+    """Raises `MissingExtraError` for the first of the part's packages that is not installed."""
+    for package in packages:
+        try:
+            import_module(package)
+        except ModuleNotFoundError as missing:
+            raise MissingExtraError(package, extra) from missing

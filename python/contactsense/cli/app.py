@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 import sys
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from .. import ContactSenseError, __version__
 from ..demo import command as demo
@@ -13,7 +16,22 @@ from . import study
 
 COMMANDS = (demo, study)
 
+INTERRUPTED = 130  # the exit code that shells give to what Ctrl-C ended
+
+
+class _Commands(TyperGroup):
+    """Ends on Ctrl-C with a line and a code of its own; Typer gives the code of an error."""
+
+    def invoke(self, ctx: Any) -> Any:
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            print("contactsense: interrupted", file=sys.stderr)
+            raise typer.Exit(INTERRUPTED) from None
+
+
 app = typer.Typer(
+    cls=_Commands,
     name="contactsense",
     help="A robot's sense of touch over its whole body from what it already measures.",
     no_args_is_help=True,
@@ -44,6 +62,19 @@ for command in COMMANDS:
 def run(arguments: list[str] | None = None) -> int:
     """Runs a command line, by default the process's; returns the exit code. An error is a line on stderr."""
     try:
+        code = _run(arguments)
+        sys.stdout.flush()
+    except OSError as error:
+        # Only output is not checked before; a reader that left (`| head`) needs no message.
+        if not isinstance(error, BrokenPipeError):
+            print(f"contactsense: cannot write the output: {error.strerror or error}", file=sys.stderr)
+        _discard_output()
+        return 1
+    return code
+
+
+def _run(arguments: list[str] | None) -> int:
+    try:
         code = app(args=arguments, standalone_mode=True)
     except ContactSenseError as error:
         print(f"contactsense: {error}", file=sys.stderr)
@@ -51,3 +82,9 @@ def run(arguments: list[str] | None = None) -> int:
     except SystemExit as end:
         return end.code if isinstance(end.code, int) else int(end.code is not None)
     return code if isinstance(code, int) else 0
+
+
+def _discard_output() -> None:
+    """What is left to be written cannot be, so that Python must not try again when it ends."""
+    with contextlib.suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -15,7 +15,8 @@ from rich.console import Console
 from rich.progress import TaskID
 
 from .. import InputError
-from .._extras import MissingExtraError
+from .._extras import MissingExtraError, require
+from .._pictures import picture_file, picture_folder
 
 app = typer.Typer(
     help="Repeat a study: experiments on published logs and on simulated robots.", no_args_is_help=True
@@ -53,20 +54,21 @@ def franka_touch(
         from ..studies.franka_touch.plot import save_plot
     except ModuleNotFoundError as missing:
         raise MissingExtraError(missing.name or "matplotlib", "study") from missing
+    picture = picture_file("png", png)
     result = study.run(data, tune=tune)
     if plot_log is not None and plot_log not in [log.name for log in result.logs]:
         raise InputError(
             f"plot_log: there is no log '{plot_log}'; there are {', '.join(log.name for log in result.logs)}"
         )
     try:
-        save_plot(result, png, plot_log)
+        save_plot(result, picture, plot_log)
     except (OSError, ValueError) as cause:
         raise InputError(f"png: cannot write '{png}': {cause}") from cause
     if as_json:
         print(json.dumps(report.as_data(result), indent=2, allow_nan=False))
     else:
         report.print_study(result, Console(), touches=touches)
-        print(f"Picture: {png}")
+        print(f"Picture: {picture}")
 
 
 @app.command("single_contacts")
@@ -117,17 +119,21 @@ def vorndamme2017(
     png: Annotated[Path | None, typer.Option(help="Folder to write pictures to.")] = None,
 ) -> None:
     """One, two and five contacts at once on Atlas, with joint torques and with force/torque sensors."""
+    require("study", "mujoco")
     from ..studies.vorndamme2017 import data, report, study
 
     options = study.Options(singles, pairs, fives, hits, seed, noise, math.radians(cone), random_poses)
-    save = _picture_writer("vorndamme2017") if png is not None else None
+    save = _picture_writer("vorndamme2017", png)
     with _progress() as show:
         result = study.run(options, processes=processes, progress=show)
     if as_json:
         print(json.dumps(data.as_data(result), indent=2, allow_nan=False))
     else:
         report.print_study(result, Console())
-    _save_pictures(save, result, png, as_json)
+    if result.complete:
+        _save_pictures(save, result, png, as_json)
+    else:
+        raise KeyboardInterrupt
 
 
 @app.command("bimbo2019")
@@ -153,19 +159,23 @@ def bimbo2019(
     png: Annotated[Path | None, typer.Option(help="Folder to write pictures to.")] = None,
 ) -> None:
     """Where an arm is touched, found by a particle filter while it moves a little: three motion models."""
+    require("study", "mujoco")
     from ..studies.bimbo2019 import data, report, study
     from ..studies.bimbo2019.options import Options
 
     folders = tuple(str(folder) for folder in package_dir or ())
     options = Options(robot, folders, trials, particles, seed, tuple(link or ()), tuple(experiment or ()))
-    save = _picture_writer("bimbo2019") if png is not None else None
+    save = _picture_writer("bimbo2019", png)
     with _progress() as show:
         result = study.run(options, processes=processes, progress=show)
     if as_json:
         print(json.dumps(data.as_data(result), indent=2, allow_nan=False))
     else:
         report.print_study(result, Console())
-    _save_pictures(save, result, png, as_json)
+    if result.complete:
+        _save_pictures(save, result, png, as_json)
+    else:
+        raise KeyboardInterrupt
 
 
 @contextmanager
@@ -194,11 +204,14 @@ def _save_pictures(
                 print(f"Picture: {path}")
 
 
-def _picture_writer(study: str) -> Callable[[Any, Path], list[Path]]:
-    """Found before the study begins, so that a missing package is told at once."""
+def _picture_writer(study: str, folder: Path | None) -> Callable[[Any, Path], list[Path]] | None:
+    """Found before the study begins, so that a missing package or a bad folder is reported at once."""
+    if folder is None:
+        return None
     try:
         plots = import_module(f"contactsense.studies.{study}.plots")
     except ModuleNotFoundError as missing:
         raise MissingExtraError(missing.name or "matplotlib", "study") from missing
+    picture_folder("png", folder)
     save: Callable[[Any, Path], list[Path]] = plots.save_plots
     return save

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from .._extras import MissingExtraError
+from .._extras import require
 from ..errors import InputError
 from .result import DemoResult, HitResult, Progress, as_data
 from .settings import Noise
@@ -27,7 +26,6 @@ __all__ = [
     "Noise",
     "Progress",
     "as_data",
-    "require",
     "run",
     "save_picture",
 ]
@@ -62,7 +60,7 @@ def run(
         raise InputError(f"robot: the demo has no robot {robot!r}; there is {', '.join(ROBOTS)}")
     if seed < 0:
         raise InputError(f"seed: must be zero or positive, not {seed}")
-    require("mujoco")
+    require("demo", "mujoco")
     if robot == "atlas":
         from .atlas.experiment import run_experiment as run_standing
         from .atlas.settings import SensorNoise
@@ -82,7 +80,7 @@ def save_picture(result: DemoResult, path: str | os.PathLike[str]) -> Path:
         InputError: the file cannot be written.
         MissingExtraError: matplotlib is not installed.
     """
-    require("matplotlib")
+    require("demo", "matplotlib")
     if result.standing is not None:
         from .atlas.figure import save_figure as save_standing
 
@@ -90,10 +88,3 @@ def save_picture(result: DemoResult, path: str | os.PathLike[str]) -> Path:
     from .figure import save_figure
 
     return save_figure(result, path)
-
-
-def require(*packages: str) -> None:
-    """Raises `MissingExtraError` for the first package that is not installed."""
-    for package in packages:
-        if find_spec(package) is None:
-            raise MissingExtraError(package, "demo")

@@ -8,7 +8,9 @@ from typing import Annotated
 
 import typer
 
-from . import as_data, require, run, save_picture
+from .._extras import require
+from .._pictures import picture_file
+from . import as_data, run, save_picture
 
 
 def register(parent: typer.Typer) -> None:
@@ -36,7 +38,8 @@ def command(
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON only.")] = False,
 ) -> None:
     """Hit a simulated robot; show what it feels against the truth."""
-    require("mujoco", "matplotlib", "rich")
+    require("demo", "mujoco", "matplotlib", "rich")
+    target = picture_file("out", out)
     from rich.console import Console
 
     from .table import live_table, print_result
@@ -49,7 +52,7 @@ def command(
             result = run(
                 robot=robot, seed=seed, noise=noise, sensor_noise=sensor_noise, gain=gain, on_progress=show
             )
-    picture = save_picture(result, out)
+    picture = save_picture(result, target)
     if as_json:
         print(json.dumps({**as_data(result), "picture": str(picture)}, indent=2, allow_nan=False))
     else:

@@ -15,6 +15,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from .._pictures import picture_file
 from ..errors import InputError
 from .result import HitResult, Signals
 from .style import DETECTED, ESTIMATE, GREY, TEXT, TRUTH
@@ -28,7 +29,7 @@ def save_styled(draw: Callable[[], Figure], path: str | os.PathLike[str]) -> Pat
     Raises:
         InputError: the file cannot be written.
     """
-    target = Path(path).resolve()
+    target = picture_file("path", path)
     style: Any = {
         "font.size": 10,
         "axes.spines.top": False,
@@ -42,7 +43,7 @@ def save_styled(draw: Callable[[], Figure], path: str | os.PathLike[str]) -> Pat
         try:
             figure.savefig(target, dpi=130, facecolor="white")
         except (OSError, ValueError) as cause:
-            raise InputError(f"out: cannot write '{path}': {cause}") from cause
+            raise InputError(f"path: cannot write '{path}': {cause}") from cause
     return target
 
 

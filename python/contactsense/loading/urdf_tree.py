@@ -14,9 +14,13 @@ import numpy as np
 
 from ..errors import ModelError
 from .description import SUPPORTED_JOINTS, FloatArray, name_list
+from .regular_file import read_regular_file
 from .xml_numbers import number_attribute, origin, parse_numbers
 
 MOVING = ("revolute", "continuous", "prismatic")
+
+# Larger files are not read [bytes]: 20 times the largest URDF published.
+_LARGEST_FILE = 1 << 24
 
 # Parsers of URDF descend one call per link.
 _MAX_DEPTH = 1000
@@ -85,9 +89,9 @@ def read_urdf(path: Path) -> UrdfTree:
     """Read and check a URDF file; `ModelError` names the element that is wrong."""
     try:
         # Bytes, so that the XML declaration decides the encoding.
-        robot = ElementTree.fromstring(path.read_bytes())
+        robot = ElementTree.fromstring(read_regular_file(path, _LARGEST_FILE))
     except OSError as cause:
-        raise ModelError(f"cannot read the URDF file '{path}': {cause.strerror}") from cause
+        raise ModelError(f"cannot read the URDF file '{path}': {cause.strerror or cause}") from cause
     except (ElementTree.ParseError, ValueError, LookupError) as cause:
         raise ModelError(f"'{path}' is not XML: {cause}") from cause
     if robot.tag != "robot":

@@ -1,8 +1,10 @@
 """The one place that imports MuJoCo, an optional dependency."""
 
+from .._extras import MissingExtraError
+
 try:
     import mujoco
 except ImportError as error:
-    raise ImportError("contactsense.sim needs MuJoCo: pip install contactsense[sim]") from error
+    raise MissingExtraError("mujoco", "sim") from error
 
 __all__ = ["mujoco"]

@@ -3,32 +3,78 @@
 from __future__ import annotations
 
 import os
+import signal
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
+from contextlib import closing, contextmanager
+from multiprocessing import active_children, get_context
+from multiprocessing.process import BaseProcess
 from typing import TypeVar
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 
-def each(
+def collect(
+    function: Callable[[Item], Result],
+    items: Sequence[Item],
+    processes: int | None,
+    done: Callable[[Item], None],
+) -> tuple[list[Result], bool]:
+    """`function` of each item, in the items' order, and whether these are all: Ctrl-C ends it early.
+
+    `processes`: default one a core. The function must be known by name, and depend on its item alone.
+    `done` is told each item that is finished.
+    """
+    results: list[Result] = []
+    with closing(_each(function, items, processes, done)) as found:
+        try:
+            results.extend(found)
+        except KeyboardInterrupt:
+            return results, False
+    return results, True
+
+
+def _each(
     function: Callable[[Item], Result],
     items: Sequence[Item],
     processes: int | None,
     done: Callable[[Item], None],
 ) -> Iterator[Result]:
-    """`function` of each item, in the items' order; `done` is told each that is finished.
-
-    `processes`: default one a core. The function must be known by name, and depend on its item alone.
-    """
     count = min(processes or os.cpu_count() or 1, max(len(items), 1))
     if count == 1:
         for item in items:
-            yield function(item)
-            done(item)
-        return
-    with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as pool:
-        for item, result in zip(items, pool.map(function, items), strict=True):
+            result = function(item)
             done(item)
             yield result
+        return
+    others, workers = set(active_children()), set[BaseProcess]()
+    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"))
+    try:
+        with _ignoring_interrupts():
+            found = pool.map(function, items)
+            workers = set(active_children()) - others
+        for item, result in zip(items, found, strict=True):
+            done(item)
+            yield result
+        pool.shutdown()
+    except BaseException:
+        # An item may take many seconds, so whoever still works is not waited for.
+        pool.shutdown(wait=False, cancel_futures=True)
+        for worker in workers:
+            worker.terminate()
+        raise
+
+
+@contextmanager
+def _ignoring_interrupts() -> Iterator[None]:
+    """Processes that start here leave Ctrl-C to this one, which stops them."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)

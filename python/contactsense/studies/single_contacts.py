@@ -100,10 +100,12 @@ def run(robot: Robot, points: int = 100, seed: int = 0, threshold: float = 1e-3)
     """Judges `points` random touches of every link (those on the fixed base too: no joint feels them).
 
     Raises:
-        InputError: `points` is not positive.
+        InputError: `points` is not positive, or `seed` is negative.
     """
     if points < 1:
         raise InputError(f"points: must be at least 1, not {points}")
+    if seed < 0:
+        raise InputError(f"seed: must not be negative, not {seed}")
     isolator = ContactIsolator(robot, torque_threshold=threshold)
     results = []
     for index, link in enumerate(robot.link_names):

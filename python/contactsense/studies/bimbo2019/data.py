@@ -16,6 +16,7 @@ def as_data(study: Study) -> dict[str, Any]:
     data: dict[str, Any] = plain(
         {
             "study": "bimbo2019",
+            "complete": study.complete,
             "options": asdict(study.options),
             "links": study.links,
             "experiments": [_experiment(study, experiment) for experiment in study.options.chosen()],

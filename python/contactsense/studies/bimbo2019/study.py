@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 
 from ... import InputError
-from ..parallel import each
+from ..parallel import collect
 from .arm import load_arm
 from .experiments import BY_NAME, Experiment, Filter
 from .metric import Outcome
@@ -38,6 +38,7 @@ class Study:
     options: Options
     links: tuple[str, ...]
     trials: list[Trial]
+    complete: bool = True  # Ctrl-C did not end it early
 
     def outcomes(self, experiment: Experiment, kind: Filter, link: str | None = None) -> list[Outcome]:
         """Of all trials with one filter, on one link or on all."""
@@ -63,6 +64,7 @@ def run(
     """Runs the study; `progress` is told the stage, and how much of it is done.
 
     The answer depends on the options alone, not on `processes` (default: one a core).
+    Ctrl-C ends it early, with the trials that are finished.
 
     Raises:
         InputError: an option cannot be used.
@@ -83,7 +85,8 @@ def run(
         done += 1
         progress("trials", done, len(items))
 
-    return Study(options, arm.links, list(each(_trial, items, processes, count)))
+    trials, complete = collect(_trial, items, processes, count)
+    return Study(options, arm.links, trials, complete)
 
 
 def _trial(item: Item) -> Trial:

@@ -20,6 +20,7 @@ def as_data(study: Study) -> dict[str, Any]:
     data: dict[str, Any] = plain(
         {
             "study": "vorndamme2017",
+            "complete": study.complete,
             "options": asdict(study.options),
             "runs": [_run_data(run) for run in study.runs],
             "hits": [

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from ... import ContactIsolator, ForceTorqueSensor, Robot
-from ..parallel import each
+from ..parallel import collect
 from .information import rank_deficit
 from .instruments import Method, observed, sensor_links
 from .judge import Verdict, judge, judge_answers
@@ -86,18 +86,21 @@ def run_tasks(
     tasks: Sequence[Task],
     processes: int | None = None,
     done: Callable[[int], None] = lambda scenes: None,
-) -> list[list[Verdict]]:
-    """Verdicts of each task, in the tasks' order; `done` is told the number of scenes of every chunk."""
+) -> tuple[list[list[Verdict]], bool]:
+    """Verdicts of each task, in the tasks' order, and whether these are all: Ctrl-C ends it early.
+
+    `done` is told the number of scenes of every chunk.
+    """
     chunks = [
         (number, Task(task.setting, task.scenes[start : start + CHUNK], task.start + start, task.seed))
         for number, task in enumerate(tasks)
         for start in range(0, len(task.scenes), CHUNK)
     ]
     results: list[list[Verdict]] = [[] for _ in tasks]
-    found = each(_run_numbered, chunks, processes, lambda chunk: done(len(chunk[1].scenes)))
-    for (number, _), verdicts in zip(chunks, found, strict=True):
+    found, complete = collect(_run_numbered, chunks, processes, lambda chunk: done(len(chunk[1].scenes)))
+    for (number, _), verdicts in zip(chunks, found, strict=False):
         results[number] += verdicts
-    return results
+    return results, complete
 
 
 def _run_numbered(chunk: tuple[int, Task]) -> list[Verdict]:

@@ -9,7 +9,7 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 
 from ... import InputError, Robot
-from ..parallel import each
+from ..parallel import collect
 from ..sampling import CONE
 from .hits import ideal_series, scaled, simulated_series
 from .instruments import METHODS, Method, external_torque, external_wrenches
@@ -43,6 +43,8 @@ class Options:
         for name in ("singles", "pairs", "fives", "hits"):
             if getattr(self, name) < 1:
                 raise InputError(f"{name}: must be at least 1, not {getattr(self, name)}")
+        if self.seed < 0:
+            raise InputError(f"seed: must not be negative, not {self.seed}")
         if not 0.0 < self.noise < 1.0:
             raise InputError(f"noise: must be between 0 and 1 (relative), not {self.noise}")
         if not 0.0 < self.cone < np.pi / 2:
@@ -81,6 +83,7 @@ class Study:
     runs: list[Run]
     hits: list[Hits]
     timings: list[Timing] = field(default_factory=list)
+    complete: bool = True  # Ctrl-C did not end it early
 
     def run(self, name: str, method: Method, noise: float = 0.0, *, matched: bool = False) -> Run:
         """The run of a set of scenes; `matched`: with thresholds that suit the noise."""
@@ -106,6 +109,7 @@ def run(
     """Runs the study; `progress` is told the stage, and how much of it is done.
 
     The answer, but for the timings, depends on the options alone, not on `processes` (default: one a core).
+    Ctrl-C ends it early, with the scenes that are finished.
 
     Raises:
         InputError: an option cannot be used.
@@ -122,18 +126,27 @@ def run(
         done += scenes
         progress("isolating", done, total)
 
-    verdicts = run_tasks([task for _, task in tasks], processes, count)
+    verdicts, complete = run_tasks([task for _, task in tasks], processes, count)
     runs = [
-        Run(name, task.setting, list(task.scenes), found)
+        Run(name, task.setting, list(task.scenes[: len(found)]), found)
         for (name, task), found in zip(tasks, verdicts, strict=True)
+        if found
     ]
-    hits = _hits(sets["singles"][: options.hits], over_time, processes, progress)
+    hits: list[Hits] = []
     timings: list[Timing] = []
-    timed = [(sets[name][:TIMED], method) for method in over_time for name in ("singles", "pairs", "fives")]
-    for number, (scenes, method) in enumerate(timed, 1):
-        timings.append(measure(robot, scenes, method))
-        progress("timing", number, len(timed))
-    return Study(options, robot, runs, hits, timings)
+    if complete:
+        hits, complete = _hits(sets["singles"][: options.hits], over_time, processes, progress)
+    if complete:
+        timed = [
+            (sets[name][:TIMED], method) for method in over_time for name in ("singles", "pairs", "fives")
+        ]
+        try:
+            for number, (scenes, method) in enumerate(timed, 1):
+                timings.append(measure(robot, scenes, method))
+                progress("timing", number, len(timed))
+        except KeyboardInterrupt:
+            complete = False
+    return Study(options, robot, runs, hits, timings, complete)
 
 
 def _scenes(robot: Robot, options: Options) -> dict[str, list[Scene]]:
@@ -191,7 +204,7 @@ def _hits(
     methods: Sequence[Method],
     processes: int | None,
     progress: Callable[[str, int, int], None],
-) -> list[Hits]:
+) -> tuple[list[Hits], bool]:
     sets: list[tuple[Kind, float]] = [(kind, size) for kind in get_args(Kind) for size in AMPLITUDES]
     items = [
         (kind, scaled(scene, amplitude), tuple(methods))
@@ -205,16 +218,13 @@ def _hits(
         done += 1
         progress("hits over time", done, len(items))
 
-    found = iter(each(_hit, items, processes, count))
-    series = [(item[0], next(found)) for item in items]
-    return [
-        Hits(
-            amplitude,
-            kind,
-            [one for each_kind, one in series if each_kind == kind and np.isclose(one.amplitude, amplitude)],
-        )
-        for kind, amplitude in sets
-    ]
+    found, complete = collect(_hit, items, processes, count)
+    series: dict[tuple[Kind, float], list[Series]] = {kind_and_size: [] for kind_and_size in sets}
+    for (kind, _, _), one in zip(items, found, strict=False):
+        size = min(AMPLITUDES, key=lambda amplitude: abs(amplitude - one.amplitude))
+        series[kind, size].append(one)
+    hits = [Hits(amplitude, kind, series[kind, amplitude]) for kind, amplitude in sets]
+    return [each for each in hits if each.series], complete
 
 
 HitItem: TypeAlias = tuple[Kind, Scene, tuple[Method, ...]]
