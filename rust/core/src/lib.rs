@@ -9,10 +9,11 @@ pub mod monitor;
 pub mod observer;
 pub mod particle;
 mod random;
+mod regular_file;
 pub mod robot;
 pub mod sensor;
 pub mod spatial;
 pub mod surface;
-mod xml_nesting;
+mod xml_limits;
 
 pub use error::{Error, Result};

@@ -2,12 +2,15 @@
 
 use nalgebra::Vector3;
 
+use super::components::Edges;
 use super::mesh::Mesh;
 use super::triangle::{closest_feature, Feature};
 use super::ClosestPoint;
 
 /// Steps from triangle to triangle at most.
 const STEPS: usize = 32;
+/// Triangles round one vertex at most: a search through the tree looks at about as many.
+const LARGEST_FAN: usize = 128;
 const NONE: u32 = u32::MAX;
 
 /// Which triangles meet at edges and vertices.
@@ -52,23 +55,20 @@ impl Neighbours {
                 next[v as usize] += 1;
             }
         }
-        let fan = |v: u32| &fans[first[v as usize] as usize..first[v as usize + 1] as usize];
-        let across = triangles
-            .iter()
-            .enumerate()
-            .map(|(id, triangle)| {
-                [0, 1, 2].map(|k| {
-                    let other_end = triangle[(k + 1) % 3];
-                    let mut others = fan(triangle[k])
-                        .iter()
-                        .filter(|&&t| t != id as u32 && triangles[t as usize].contains(&other_end));
-                    match (others.next(), others.next()) {
-                        (Some(&other), None) => other,
-                        _ => NONE,
-                    }
-                })
-            })
-            .collect();
+        let mut across = vec![[NONE; 3]; triangles.len()];
+        for uses in Edges::new(triangles).iter() {
+            let &[([from, to], a), (_, b)] = uses else { continue };
+            for (own, other) in [(a.triangle, b.triangle), (b.triangle, a.triangle)] {
+                let triangle = triangles[own as usize];
+                let corner = (0..3).find(|&k| {
+                    let (start, end) = (triangle[k], triangle[(k + 1) % 3]);
+                    [start.min(end), start.max(end)] == [from, to]
+                });
+                if let Some(k) = corner {
+                    across[own as usize][k] = other;
+                }
+            }
+        }
         let faces =
             triangles.iter().map(|triangle| Face::new(triangle.map(|v| points[v as usize]))).collect();
         Neighbours { across, first, fans, faces }
@@ -106,6 +106,9 @@ impl Mesh {
                 Feature::Corner(k) => {
                     let corner = self.triangles[id][usize::from(k)];
                     let fan = self.neighbours.fan(corner);
+                    if fan.len() > LARGEST_FAN {
+                        return None;
+                    }
                     if fan.iter().any(|&other| self.leads_away(&(p - point), corner, other)) {
                         fan.iter().filter(|&&other| other as usize != id).for_each(|&other| visit(other));
                     }

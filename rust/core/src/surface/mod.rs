@@ -6,12 +6,13 @@
 mod build;
 mod bvh;
 mod closest;
-mod collada;
 mod components;
+mod crowded;
 mod descent;
 mod line;
 mod load;
 mod mesh;
+mod nesting;
 mod part;
 mod primitive;
 mod rays;
@@ -187,8 +188,8 @@ impl Surface {
     /// `direction` is a unit vector; crossings before `t_min` (m) are left out (minus infinity: a full line). Hits
     /// inside another closed part are left out too, so that those of closed parts come in pairs in and out.
     ///
-    /// Never allocates: at the capacity of `hits` it stops and returns `false`. Capacity is needed for the hits of
-    /// all parts, before those inside others are dropped. A line that is not finite, or without direction, hits
+    /// Never allocates: where the crossings of all parts, before those inside others are dropped, do not fit into the
+    /// capacity of `hits`, only the nearest ones that fit are looked at, and it returns `false`. A line that is not finite, or without direction, hits
     /// nothing.
     pub fn cast_line_into(
         &self,

@@ -8,12 +8,13 @@ use super::line::Line;
 use super::mesh::Mesh;
 use super::part::Solid;
 use super::tree::{Child, Node, STACK};
-use super::{union, RayHit};
+use super::{crowded, union, RayHit};
 
 /// Distances nearer than this share of the mesh's radius can be in either order.
 const TIE: f64 = 1e-12;
 
-/// Crossings of a line with all parts, those inside other closed parts dropped; `false` if some did not fit.
+/// Crossings of a line with all parts, those inside other closed parts dropped; `false` if some did not fit, and only
+/// the nearest are there.
 pub(super) fn cast(
     solids: &[Solid],
     (center, radius): (&Vector3<f64>, f64),
@@ -27,32 +28,47 @@ pub(super) fn cast(
         return true;
     }
     let start = hits.len();
-    let mut fitted = true;
+    let ray = Ray { origin, direction, t_min };
     for (part, solid) in solids.iter().enumerate() {
         let own = hits.len();
-        let part = part as u32;
-        fitted &= match solid {
-            Solid::Mesh { mesh, first } => mesh.cast(origin, direction, t_min, *first, part, hits),
-            Solid::Exact(placed) => placed.cast(origin, direction, t_min, part, hits),
-        };
+        let mut fitted = true;
+        ray.cross(solid, part as u32, &mut |hit| {
+            fitted = hits.len() < hits.capacity();
+            if fitted {
+                hits.push(hit);
+            }
+            fitted
+        });
+        if !fitted {
+            hits.truncate(start);
+            crowded::nearest(solids, &ray, radius + center.norm(), hits);
+            return false;
+        }
         if let Solid::Mesh { mesh, .. } = solid {
+            let out = hits[own..].iter().filter(|hit| !hit.entering).count();
+            let starts_inside = 2 * out > hits.len() - own;
             sort(&mut hits[own..]);
-            alternate(&mut hits[own..], TIE * (mesh.tree.radius + mesh.tree.center.norm()), mesh.closed);
+            alternate(&mut hits[own..], mesh, starts_inside);
         }
     }
     if solids.len() > 1 && hits.len() > start + 1 {
-        union::hide_inside(solids, &mut hits[start..], 1e-9 * (radius + center.norm()));
-        let mut kept = start;
-        for i in start..hits.len() {
-            if !hits[i].hidden {
-                hits[kept] = hits[i];
-                kept += 1;
-            }
-        }
-        hits.truncate(kept);
-        sort(&mut hits[start..]);
+        union::hide_inside(solids, &mut hits[start..], radius + center.norm());
+        drop_hidden(start, hits);
     }
-    fitted
+    true
+}
+
+/// Drops the hits from `start` on that are hidden, and sorts the others.
+pub(super) fn drop_hidden(start: usize, hits: &mut Vec<RayHit>) {
+    let mut kept = start;
+    for i in start..hits.len() {
+        if !hits[i].hidden {
+            hits[kept] = hits[i];
+            kept += 1;
+        }
+    }
+    hits.truncate(kept);
+    sort(&mut hits[start..]);
 }
 
 /// Sorts by distance without allocating; equal distances keep their order in short lists, the usual case.
@@ -70,14 +86,13 @@ fn sort(hits: &mut [RayHit]) {
     }
 }
 
-/// Puts hits at the same distance, to rounding, in an order in which the line goes in and out in turn.
-fn alternate(hits: &mut [RayHit], tie: f64, closed: bool) {
-    if !closed || hits.len() < 2 {
+/// Puts hits of a mesh at the same distance, to rounding, in an order in which the line goes in and out in turn.
+pub(super) fn alternate(hits: &mut [RayHit], mesh: &Mesh, starts_inside: bool) {
+    if !mesh.closed || hits.len() < 2 {
         return;
     }
-    // Of a closed mesh as many come out as go in, so what comes out too often ahead was gone into before.
-    let out = hits.iter().filter(|hit| !hit.entering).count();
-    let mut inside = 2 * out > hits.len();
+    let tie = TIE * (mesh.tree.radius + mesh.tree.center.norm());
+    let mut inside = starts_inside;
     for i in 0..hits.len() {
         if hits[i].entering == inside {
             let limit = hits[i].distance + tie;
@@ -93,35 +108,48 @@ fn alternate(hits: &mut [RayHit], tie: f64, closed: bool) {
     }
 }
 
-impl Mesh {
-    fn cast(
-        &self,
-        origin: &Vector3<f64>,
-        direction: &Vector3<f64>,
-        t_min: f64,
-        first: usize,
-        part: u32,
-        hits: &mut Vec<RayHit>,
-    ) -> bool {
-        let mut fitted = true;
-        self.cross(origin, direction, t_min, &mut |distance, id, entering| {
-            fitted = hits.len() < hits.capacity();
-            if fitted {
-                hits.push(RayHit {
-                    distance,
-                    point: origin + direction * distance,
-                    normal: self.normals[id],
-                    triangle: (first + id) as i64,
-                    part,
-                    entering,
-                    hidden: false,
+/// A line from `t_min` on.
+pub(super) struct Ray<'a> {
+    pub origin: &'a Vector3<f64>,
+    pub direction: &'a Vector3<f64>,
+    pub t_min: f64,
+}
+
+impl Ray<'_> {
+    /// Calls `visit` for every crossing with a part, in no order, until it returns `false`.
+    #[inline]
+    pub fn cross(&self, solid: &Solid, part: u32, visit: &mut impl FnMut(RayHit) -> bool) {
+        let Ray { origin, direction, t_min } = *self;
+        match solid {
+            Solid::Mesh { mesh, first } => {
+                mesh.cross(origin, direction, t_min, &mut |distance, id, entering| {
+                    visit(RayHit {
+                        distance,
+                        point: origin + direction * distance,
+                        normal: mesh.normals[id],
+                        triangle: (first + id) as i64,
+                        part,
+                        entering,
+                        hidden: false,
+                    })
                 });
             }
-            fitted
-        });
-        fitted
+            Solid::Exact(placed) => placed.cross(origin, direction, t_min, part, visit),
+        }
     }
 
+    /// By how much more often the line comes out of a part than it goes in: whether it starts inside, if that is closed.
+    pub fn depth(&self, solid: &Solid) -> i64 {
+        let mut depth = 0;
+        self.cross(solid, 0, &mut |hit| {
+            depth += if hit.entering { -1 } else { 1 };
+            true
+        });
+        depth
+    }
+}
+
+impl Mesh {
     /// Calls `visit(distance, triangle, entering)` for every crossing from `t_min` on, in no order, until it returns
     /// `false`.
     pub fn cross(

@@ -63,6 +63,12 @@ pub(super) fn repair(
         "edge where no winding agrees: one-sided",
         "edges where no winding agrees: one-sided",
     );
+    say(
+        remarks,
+        outcome.unchecked,
+        "component not compared with all others: it may be a cavity",
+        "components not compared with all others: they may be cavities",
+    );
     let closed = winding::balanced(&triangles);
     if !closed {
         remarks.push("the mesh is open: a line can go in without coming out".into());

@@ -3,25 +3,27 @@
 use super::part::Solid;
 use super::RayHit;
 
+/// Faces nearer to each other than this share of the surface's size touch.
+const TIE: f64 = 1e-9;
+
 /// Marks the hits inside another closed part, by counting the crossings of each part along the line.
 ///
-/// Faces of two parts that touch within `tie` are inside their union; of faces that coincide the part with the
+/// Faces of two parts that touch are inside their union; of faces that coincide the part with the
 /// smaller index keeps its hit going in, and the one with the larger its hit coming out. Takes time with the square
 /// of the number of hits, which is a handful.
-pub(super) fn hide_inside(solids: &[Solid], hits: &mut [RayHit], tie: f64) {
+pub(super) fn hide_inside(solids: &[Solid], hits: &mut [RayHit], size: f64) {
     for i in 0..hits.len() {
-        let hit = hits[i];
-        let mut others = hits.iter().filter(|other| other.part != hit.part);
-        // Crossings of another part still to come, seen from this hit: more out than in means that it is inside.
-        // One part at a time, as its count is positive or zero, never negative, where it is closed.
-        let mut depth = 0i64;
-        others.by_ref().filter(|other| comes_after(other, &hit, tie)).for_each(|other| {
-            if solids[other.part as usize].closed() {
-                depth += if other.entering { -1 } else { 1 };
-            }
-        });
-        hits[i].hidden = depth > 0;
+        hits[i].hidden = depth(solids, hits, &hits[i], size) > 0;
     }
+}
+
+/// In how many other closed parts `hit` lies, as far as the `hits` still to come along the line tell: of each part as
+/// many more come out than go in, which is never a negative number.
+pub(super) fn depth(solids: &[Solid], hits: &[RayHit], hit: &RayHit, size: f64) -> i64 {
+    let tie = TIE * size;
+    let others = hits.iter().filter(|other| other.part != hit.part && comes_after(other, hit, tie));
+    let closed = others.filter(|other| solids[other.part as usize].closed());
+    closed.map(|other| if other.entering { -1 } else { 1 }).sum()
 }
 
 /// Whether `other` comes after `hit` along the line, where within `tie` going in comes before coming out.

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::components::{components, Edges};
+use super::nesting::{outermost, Shell};
 
 /// Share of the volume of a sphere of the same area from which on an open mesh has an inside.
 const CLEARLY_CURVED: f64 = 0.01;
@@ -16,6 +17,8 @@ pub(super) struct Outcome {
     pub flipped: usize,
     /// Edges across which no winding agrees, as on a Moebius strip.
     pub one_sided: usize,
+    /// Closed components that may lie inside others, which would have taken too long to find out.
+    pub unchecked: usize,
 }
 
 /// Makes each component's winding consistent, and outward if it has an inside.
@@ -34,13 +37,8 @@ pub(super) fn orient(vertices: &[Vector3<f64>], triangles: &mut [[u32; 3]]) -> O
         .map(|i| Shell::new(vertices, triangles, &members[i], volume[i]))
         .collect();
     // An inward shell inside another is a cavity and stays. If the outermost shell around it is turned, it turns too.
-    let outermost: Vec<Option<usize>> = (0..shells.len())
-        .map(|i| {
-            (0..shells.len())
-                .filter(|&j| j != i && shells[j].holds(vertices, triangles, &shells[i]))
-                .max_by(|&a, &b| shells[a].volume.abs().total_cmp(&shells[b].volume.abs()))
-        })
-        .collect();
+    let (outermost, unchecked) = outermost(vertices, triangles, &shells);
+    outcome.unchecked = unchecked;
     let turn: Vec<bool> = (0..shells.len()).map(|i| shells[outermost[i].unwrap_or(i)].volume < 0.0).collect();
     let mut flip = vec![false; triangles.len()];
     for (shell, _) in shells.iter().zip(&turn).filter(|(_, &turn)| turn) {
@@ -70,15 +68,15 @@ fn closed(triangles: &[[u32; 3]], label: &[u32], count: usize) -> Vec<bool> {
     let mut balance: Vec<(u32, i32)> = Vec::new();
     for uses in Edges::new(triangles).iter() {
         balance.clear();
-        for (_, edge) in uses {
-            let l = label[edge.triangle as usize];
-            let step = if edge.forward { 1 } else { -1 };
-            match balance.iter_mut().find(|(other, _)| *other == l) {
-                Some((_, sum)) => *sum += step,
-                None => balance.push((l, step)),
+        balance.extend(
+            uses.iter().map(|(_, edge)| (label[edge.triangle as usize], if edge.forward { 1 } else { -1 })),
+        );
+        balance.sort_unstable_by_key(|&(label, _)| label);
+        for own in balance.chunk_by(|a, b| a.0 == b.0) {
+            if own.iter().map(|&(_, step)| step).sum::<i32>() != 0 {
+                closed[own[0].0 as usize] = false;
             }
         }
-        balance.iter().filter(|(_, sum)| *sum != 0).for_each(|&(l, _)| closed[l as usize] = false);
     }
     closed
 }
@@ -159,43 +157,4 @@ fn measure(vertices: &[Vector3<f64>], triangles: &[[u32; 3]], members: &[u32]) -
         .map(|[a, b, c]| (a - middle).dot(&(b - middle).cross(&(c - middle))) / 6.0)
         .sum();
     (volume, area)
-}
-
-/// A closed component.
-struct Shell<'a> {
-    members: &'a [u32],
-    volume: f64,
-    low: Vector3<f64>,
-    high: Vector3<f64>,
-}
-
-impl<'a> Shell<'a> {
-    fn new(vertices: &[Vector3<f64>], triangles: &[[u32; 3]], members: &'a [u32], volume: f64) -> Self {
-        let points = members.iter().flat_map(|&i| triangles[i as usize]).map(|v| vertices[v as usize]);
-        let low = points.clone().fold(Vector3::repeat(f64::INFINITY), |a, v| a.inf(&v));
-        let high = points.fold(Vector3::repeat(f64::NEG_INFINITY), |a, v| a.sup(&v));
-        Shell { members, volume, low, high }
-    }
-
-    /// Whether `other` lies inside: one of its points does, and its box.
-    fn holds(&self, vertices: &[Vector3<f64>], triangles: &[[u32; 3]], other: &Shell) -> bool {
-        let boxed = (0..3).all(|k| self.low[k] <= other.low[k] && other.high[k] <= self.high[k]);
-        if !boxed || self.volume.abs() <= other.volume.abs() {
-            return false;
-        }
-        let [a, b, c] = triangles[other.members[0] as usize].map(|v| vertices[v as usize]);
-        let p = (a + b + c) / 3.0;
-        // The winding number about p, from the solid angles of the triangles (Van Oosterom and Strackee 1983).
-        let angle: f64 = self
-            .members
-            .iter()
-            .map(|&i| {
-                let [a, b, c] = triangles[i as usize].map(|v| vertices[v as usize] - p);
-                let (x, y, z) = (a.norm(), b.norm(), c.norm());
-                let below = x * y * z + a.dot(&b) * z + b.dot(&c) * x + c.dot(&a) * y;
-                2.0 * a.dot(&b.cross(&c)).atan2(below)
-            })
-            .sum();
-        angle.abs() > 2.0 * std::f64::consts::PI
-    }
 }

@@ -1,27 +1,18 @@
 //! A URDF file's text.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use crate::error::{Error, Result};
+use crate::regular_file;
 
-/// Larger files are refused [bytes].
-const LARGEST_FILE: u64 = 1 << 28;
+/// Larger files are not read [bytes]: 20 times the largest URDF published.
+const LARGEST_FILE: u64 = 1 << 24;
 
 /// The file's text, decoded as its byte order mark or XML declaration says.
 pub(super) fn read(path: &Path) -> Result<String> {
     let shown = path.display();
-    let unreadable = |cause| Error::Model(format!("cannot read the URDF file '{shown}': {cause}"));
-    let mut bytes = Vec::new();
-    File::open(path)
-        .map_err(unreadable)?
-        .take(LARGEST_FILE + 1)
-        .read_to_end(&mut bytes)
-        .map_err(unreadable)?;
-    if bytes.len() as u64 > LARGEST_FILE {
-        return Err(Error::Model(format!("'{shown}' is larger than a URDF can be ({LARGEST_FILE} bytes)")));
-    }
+    let bytes = regular_file::read(path, LARGEST_FILE)
+        .map_err(|cause| Error::Model(format!("cannot read the URDF file '{shown}': {cause}")))?;
     decode(bytes).map_err(|cause| Error::Model(format!("'{shown}' is not XML: {cause}")))
 }
 

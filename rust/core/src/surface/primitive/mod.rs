@@ -145,30 +145,28 @@ impl Placed {
     }
 
     /// Appends the crossings from `t_min` on; `false` if one did not fit.
-    pub fn cast(
+    /// Calls `visit` for both crossings of a line, those from `t_min` on, until it returns `false`.
+    pub fn cross(
         &self,
         origin: &Vector3<f64>,
         direction: &Vector3<f64>,
         t_min: f64,
         part: u32,
-        hits: &mut Vec<RayHit>,
-    ) -> bool {
+        visit: &mut impl FnMut(RayHit) -> bool,
+    ) {
         // From the point of the line nearest to the centre, so that a far origin costs no precision.
         let shift = (self.pose.translation - origin).dot(direction);
         let local = self.pose.inverse_transform_point(&(origin + direction * shift));
         let along = self.pose.inverse_transform_vector(direction);
         let Some(crossings) = self.shape.cross(&local, &along) else {
-            return true;
+            return;
         };
         for (crossing, entering) in crossings.into_iter().zip([true, false]) {
             let distance = crossing.distance + shift;
             if distance < t_min {
                 continue;
             }
-            if hits.len() == hits.capacity() {
-                return false;
-            }
-            hits.push(RayHit {
+            let more = visit(RayHit {
                 distance,
                 point: origin + direction * distance,
                 normal: self.pose.rotation * crossing.normal,
@@ -177,8 +175,10 @@ impl Placed {
                 entering,
                 hidden: false,
             });
+            if !more {
+                return;
+            }
         }
-        true
     }
 
     pub fn sample(&self, u: [f64; 3]) -> SurfacePoint {

@@ -1,7 +1,9 @@
 //! Tests of the surface as a whole.
 
 mod brute_force;
+mod crowded;
 mod files;
+mod large;
 mod meshes;
 mod primitives;
 mod repairs;

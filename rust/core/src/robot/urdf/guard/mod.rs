@@ -35,7 +35,7 @@ pub(super) fn read(path: &Path, role: UrdfGeometry) -> Result<Checked> {
     let shown = path.display();
     let text = text::read(path)?;
     let not_xml = |cause: String| Error::Model(format!("'{shown}' is not XML: {cause}"));
-    crate::xml_nesting::check(&text).map_err(not_xml)?;
+    crate::xml_limits::check(&text).map_err(not_xml)?;
     let document = Document::parse(&text).map_err(|cause| not_xml(cause.to_string()))?;
     let root = document.root_element();
     if !is(root, "robot") {
