@@ -1,10 +1,14 @@
 """Mesh files come from the URDF's folder and the package folders, nowhere else."""
 
+import os
+from pathlib import Path
+
 import numpy as np
 import pytest
 from urdf_text import SOLID, link, robot, shape, write
 
-from contactsense.errors import GeometryError
+from contactsense import Robot, _core
+from contactsense.errors import GeometryError, ModelError
 from contactsense.loading.describe_urdf import describe_urdf
 
 
@@ -101,3 +105,29 @@ def test_loop_of_links_is_refused(site):
     (site / "arm/loop.stl").symlink_to(site / "arm/loop.stl")
     with pytest.raises(GeometryError, match=r"loop.stl"):
         load(site, "loop.stl")
+
+
+def _no_end(folder: Path, kind: str) -> list[Path]:
+    """Files whose reading would not end: a device, a pipe, and one of 20 GB that takes no space."""
+    pipe, sparse = folder / f"pipe{kind}", folder / f"sparse{kind}"
+    os.mkfifo(pipe)
+    with sparse.open("wb") as file:
+        file.truncate(20_000_000_000)
+    return [Path("/dev/zero"), pipe, sparse, folder]
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs pipes with names")
+@pytest.mark.parametrize("read", [Robot.from_urdf, _core._robot_from_urdf], ids=["package", "core"])
+def test_files_without_end_are_refused(read, tmp_path):
+    for path in _no_end(tmp_path, ".urdf"):
+        with pytest.raises(ModelError, match=r"(regular file|at most|was not found|directory)"):
+            read(path)
+    meshes = tmp_path / "arm"
+    meshes.mkdir()
+    device = meshes / "device.stl"
+    device.symlink_to("/dev/zero")
+    endless = [path for kind in (".stl", ".obj", ".dae") for path in _no_end(meshes, kind)[1:3]]
+    for mesh in (device, *endless):
+        urdf = write(meshes, robot(link("a", SOLID + shape(f'<mesh filename="{mesh.name}"/>'))))
+        with pytest.raises(GeometryError, match=mesh.name):
+            read(urdf, package_dirs=["/dev"])

@@ -11,7 +11,10 @@ NEEDED = ("typer", "rich")
 
 
 def main() -> None:
-    """Runs a command and ends the process: 0 done, 1 failed, 2 wrong input or something not installed."""
+    """Runs a command and ends the process.
+
+    Exit codes: 0 done, 1 failed, 2 wrong input or something not installed, 130 interrupted.
+    """
     try:
         from .app import run
     except ModuleNotFoundError as missing:

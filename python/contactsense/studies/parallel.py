@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import closing, contextmanager
 from multiprocessing import active_children, get_context
@@ -41,7 +41,7 @@ def _each(
     items: Sequence[Item],
     processes: int | None,
     done: Callable[[Item], None],
-) -> Iterator[Result]:
+) -> Generator[Result, None, None]:
     count = min(processes or os.cpu_count() or 1, max(len(items), 1))
     if count == 1:
         for item in items:

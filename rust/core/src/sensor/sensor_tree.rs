@@ -140,12 +140,13 @@ impl SensorTree {
     /// The nearest sensor, in use or not, that all that a body's joint moves loads: at that joint's own link or before.
     pub(crate) fn at_joint(&self, robot: &Robot, body: usize) -> Option<usize> {
         let links = robot.links();
-        let is_first = |parent: Option<usize>| parent.is_none_or(|parent| links[parent].body != body);
-        match links.iter().position(|link| link.body == body && is_first(link.parent)) {
-            Some(link) => self.nearest[link],
-            None if body == WORLD => None,
-            None => self.at_joint(robot, robot.parent_body(body)),
-        }
+        let towards_base = |&body: &usize| (body != WORLD).then(|| robot.parent_body(body));
+        let first_link = |body: usize| {
+            let is_first = |parent: Option<usize>| parent.is_none_or(|parent| links[parent].body != body);
+            links.iter().position(|link| link.body == body && is_first(link.parent))
+        };
+        let link = std::iter::successors(Some(body), towards_base).find_map(first_link);
+        link.and_then(|link| self.nearest[link])
     }
 
     /// Whether a sensor lies behind another or is that one, in use or not.

@@ -95,3 +95,30 @@ fn bad_sensors_are_named() {
         }
     }
 }
+
+#[test]
+fn long_chains_without_links_need_no_deep_stack() {
+    let joint = |index: usize| JointDescription {
+        name: format!("j{index}"),
+        parent: index,
+        kind: JointKind::Revolute,
+        axis: Vector3::y(),
+        placement: at(1.0),
+        mass: 1.0,
+        com: Vector3::zeros(),
+        inertia: Matrix3::identity(),
+        armature: 0.0,
+    };
+    let robot = Robot::new(RobotDescription {
+        name: "chain".into(),
+        joints: (0..3000).map(joint).collect(),
+        links: vec![],
+        gravity: Vector3::zeros(),
+        warnings: vec![],
+    })
+    .unwrap();
+    let tree = SensorTree::new(&robot, &[]).unwrap();
+    let last = robot.body_count() - 1;
+    let search = std::thread::Builder::new().stack_size(64 * 1024);
+    assert_eq!(search.spawn(move || tree.at_joint(&robot, last)).unwrap().join().unwrap(), None);
+}

@@ -47,7 +47,7 @@ fn project(corners: &[Vector3<f64>]) -> Vec<Point> {
     if normal[axis] < 0.0 {
         (u, v) = (v, u);
     }
-    corners.iter().map(|corner| at(corner)).map(|p| [p[u], p[v]]).collect()
+    corners.iter().map(at).map(|p| [p[u], p[v]]).collect()
 }
 
 /// Twice the area of a triangle, positive if counter-clockwise.
