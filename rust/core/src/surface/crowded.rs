@@ -6,7 +6,7 @@ use super::{union, RayHit};
 
 /// Appends the nearest crossings, as many as fit, those inside other closed parts dropped; `size` is the surface's.
 ///
-/// Takes time with the number of crossings, and of parts, and with the square of the capacity.
+/// Takes time with the number of crossings and, where there are several parts, with the square of the capacity.
 pub(super) fn nearest(solids: &[Solid], ray: &Ray, size: f64, hits: &mut Vec<RayHit>) {
     let start = hits.len();
     keep_nearest(solids, ray, hits);
@@ -27,7 +27,8 @@ pub(super) fn nearest(solids: &[Solid], ray: &Ray, size: f64, hits: &mut Vec<Ray
             alternate(&mut hits[first..end], mesh, ray.depth(solid) > 0);
         }
         let own = if solid.closed() { beyond(part as usize, &hits[start..]) } else { 0 };
-        for i in first..end {
+        // A single part hides nothing.
+        for i in (first..end).filter(|_| solids.len() > 1) {
             let depth = union::depth(solids, &hits[start..], &hits[i], size) + beyond_all - own;
             hits[i].hidden = depth > 0;
         }
@@ -39,23 +40,39 @@ pub(super) fn nearest(solids: &[Solid], ray: &Ray, size: f64, hits: &mut Vec<Ray
 /// Appends the nearest crossings of all parts, in no order.
 fn keep_nearest(solids: &[Solid], ray: &Ray, hits: &mut Vec<RayHit>) {
     let start = hits.len();
-    if start == hits.capacity() {
-        return;
-    }
-    let mut farthest = start;
     for (part, solid) in solids.iter().enumerate() {
         ray.cross(solid, part as u32, &mut |hit| {
             if hits.len() < hits.capacity() {
                 hits.push(hit);
-                if hit.distance > hits[farthest].distance {
-                    farthest = hits.len() - 1;
+                if hits.len() == hits.capacity() {
+                    // Farthest first, which is a heap too.
+                    hits[start..].sort_unstable_by(|a, b| b.distance.total_cmp(&a.distance));
                 }
-            } else if hit.distance < hits[farthest].distance {
-                hits[farthest] = hit;
-                let kept = (start..hits.len()).max_by(|&a, &b| hits[a].distance.total_cmp(&hits[b].distance));
-                farthest = kept.unwrap_or(start);
+            } else if hits.get(start).is_some_and(|farthest| hit.distance < farthest.distance) {
+                replace_farthest(&mut hits[start..], hit);
             }
             true
         });
+    }
+}
+
+/// Puts a hit in place of the first of a heap, which is the farthest.
+fn replace_farthest(heap: &mut [RayHit], hit: RayHit) {
+    heap[0] = hit;
+    let mut at = 0;
+    loop {
+        let farther = |a: usize, b: usize| {
+            if b < heap.len() && heap[b].distance > heap[a].distance {
+                b
+            } else {
+                a
+            }
+        };
+        let farthest = farther(farther(at, 2 * at + 1), 2 * at + 2);
+        if farthest == at {
+            return;
+        }
+        heap.swap(at, farthest);
+        at = farthest;
     }
 }
