@@ -364,9 +364,13 @@ class ContactEstimate:
     @property
     def ambiguous(self) -> bool: ...
     @property
-    def explained(self) -> bool: ...
+    def explained(self) -> bool:
+        """Whether a single push explains the torques of the last updates; where not, `ambiguous` is True, too."""
+
     @property
-    def residual(self) -> float: ...
+    def residual(self) -> float:
+        """What the best push leaves over: root mean square over the joints, in standard deviations of the noise."""
+
     @property
     def effective_samples(self) -> float: ...
     @property

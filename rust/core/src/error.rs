@@ -12,6 +12,9 @@ pub enum Error {
     /// An argument of a call cannot be used; the object is unchanged.
     #[error("{0}")]
     Input(String),
+    /// There is not enough memory for what was asked for.
+    #[error("{0}")]
+    Memory(String),
 }
 
 /// Shorthand for results of this crate.

@@ -1,6 +1,7 @@
 //! The core's errors as the package's exceptions.
 
 use contactsense::Error;
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
@@ -22,6 +23,7 @@ pub fn to_python(py: Python<'_>, error: Error) -> PyErr {
         Error::Model(text) => (0, text),
         Error::Geometry(text) => (1, text),
         Error::Input(text) => (2, text),
+        Error::Memory(text) => return PyMemoryError::new_err(text),
     };
     match classes(py) {
         Ok(classes) => PyErr::from_type(classes[index].bind(py).clone(), text),

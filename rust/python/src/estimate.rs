@@ -148,19 +148,22 @@ impl PyContactEstimate {
         PyTuple::new(py, modes)
     }
 
-    /// The data do not say which link, or where on it.
+    /// The data do not say which link, or where on it, or no single push explains them.
     #[getter]
     fn ambiguous(&self) -> bool {
         self.estimate.ambiguous
     }
 
-    /// Whether the particles explain the measured torque.
+    /// Whether a single push explains the torques of the last updates: their mean residual is within what the stated noise
+    /// and its scatter allow (a chi-square test at 99 %), and the force changes as that of an obstacle that stays, no softer than `stiffness_range` begins.
+    /// Where not, the estimate is ambiguous, too: two contacts, a moment, a payload, a pull, or biased torques.
     #[getter]
     fn explained(&self) -> bool {
         self.estimate.explained
     }
 
-    /// Norm of the torque that the best particle leaves over [Nm], each joint weighed by its noise.
+    /// Root mean square, over all joints, of the torque that the best push leaves over at this update, in standard
+    /// deviations of the stated noise (`torque_noise` and `relative_noise`).
     #[getter]
     fn residual(&self) -> f64 {
         self.estimate.residual

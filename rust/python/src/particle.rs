@@ -53,7 +53,7 @@ pub struct Particles {
 ///
 /// `schedule`: None (by what the data show), "paper", or a dict of some of "sharpness" (alpha, [1/Nm]), "point_noise" [m],
 /// "force_noise" and "stiffness_noise" (relative), each a number or a pair (first, last), and "updates", after which the
-/// last is reached. Raises `InputError` that names the argument.
+/// last is reached. Raises `InputError` that names the argument, and `MemoryError` where the particles do not fit.
 #[pyclass(name = "ContactParticleFilter", module = "contactsense._core")]
 pub struct PyContactParticleFilter {
     filter: ContactParticleFilter,
@@ -63,15 +63,18 @@ pub struct PyContactParticleFilter {
 #[pymethods]
 impl PyContactParticleFilter {
     #[new]
-    #[pyo3(signature = (robot, *, particles=None, motion="curvature", measurement="normal", friction=None, links=None, seed=None,
+    #[pyo3(signature = (robot, *, particles=None, motion=Choice::of("curvature"), measurement=Choice::of("normal"), friction=None, links=None, seed=None,
         force_range=None, stiffness_range=None, radius_range=None, schedule=None, threads=None,
-        likelihood="gaussian", torque_noise=None, relative_noise=None, torque_threshold=None))]
+        likelihood=Choice::of("gaussian"), torque_noise=None, relative_noise=None, torque_threshold=None),
+        text_signature = "(robot, *, particles=None, motion='curvature', measurement='normal', friction=None, links=None, \
+            seed=None, force_range=None, stiffness_range=None, radius_range=None, schedule=None, threads=None, \
+            likelihood='gaussian', torque_noise=None, relative_noise=None, torque_threshold=None)")]
     #[allow(clippy::too_many_arguments)] // named in Python
     fn new(
         robot: &Bound<'_, PyRobot>,
         particles: Option<&Bound<'_, PyAny>>,
-        motion: &str,
-        measurement: &str,
+        motion: Choice,
+        measurement: Choice,
         friction: Option<Number>,
         links: Option<&Bound<'_, PyAny>>,
         seed: Option<&Bound<'_, PyAny>>,
@@ -80,40 +83,36 @@ impl PyContactParticleFilter {
         radius_range: Option<&Bound<'_, PyAny>>,
         schedule: Option<&Bound<'_, PyAny>>,
         threads: Option<&Bound<'_, PyAny>>,
-        likelihood: &str,
+        likelihood: Choice,
         torque_noise: Option<&Bound<'_, PyAny>>,
         relative_noise: Option<Number>,
         torque_threshold: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let py = robot.py();
-        let mut options = FilterOptions {
-            motion: match motion {
-                "curvature" => Motion::Curvature,
-                "fixed_on_link" => Motion::FixedOnLink,
-                "fixed_in_world" => Motion::FixedInWorld,
-                _ => {
-                    return Err(unknown(
-                        py,
-                        "motion",
-                        motion,
-                        "'curvature', 'fixed_on_link', 'fixed_in_world'",
-                    ))
-                }
-            },
-            likelihood: match likelihood {
-                "gaussian" => Likelihood::Gaussian,
-                "exponential" => Likelihood::Exponential,
-                _ => return Err(unknown(py, "likelihood", likelihood, "'gaussian', 'exponential'")),
-            },
-            links: links.map(|links| names("links", "links", links)).transpose()?,
-            ..FilterOptions::default()
-        };
         let cone = Measurement::FrictionCone(friction.map_or(0.5, |friction| friction.0));
         cone.check().map_err(|error| to_python(py, error))?;
-        options.measurement = match measurement {
-            "normal" => Measurement::Normal,
-            "friction_cone" => cone,
-            _ => return Err(unknown(py, "measurement", measurement, "'normal', 'friction_cone'")),
+        let mut options = FilterOptions {
+            motion: motion.among(
+                py,
+                "motion",
+                &[
+                    ("curvature", Motion::Curvature),
+                    ("fixed_on_link", Motion::FixedOnLink),
+                    ("fixed_in_world", Motion::FixedInWorld),
+                ],
+            )?,
+            measurement: measurement.among(
+                py,
+                "measurement",
+                &[("normal", Measurement::Normal), ("friction_cone", cone)],
+            )?,
+            likelihood: likelihood.among(
+                py,
+                "likelihood",
+                &[("gaussian", Likelihood::Gaussian), ("exponential", Likelihood::Exponential)],
+            )?,
+            links: links.map(|links| names("links", "links", links)).transpose()?,
+            ..FilterOptions::default()
         };
         if let Some(particles) = particles {
             options.particles = whole("particles", particles, 10_000_000)? as usize;
@@ -200,6 +199,45 @@ impl PyContactParticleFilter {
     }
 }
 
+/// The name of a choice; of another object what Python prints of it, which is no choice either.
+struct Choice {
+    given: String,
+    text: bool,
+}
+
+impl Choice {
+    fn of(name: &str) -> Self {
+        Choice { given: name.into(), text: true }
+    }
+
+    /// The value of that name.
+    fn among<T: Copy>(&self, py: Python<'_>, argument: &str, choices: &[(&str, T)]) -> PyResult<T> {
+        match choices.iter().find(|(name, _)| self.text && *name == self.given) {
+            Some((_, value)) => Ok(*value),
+            None => {
+                let names: Vec<String> = choices.iter().map(|(name, _)| format!("'{name}'")).collect();
+                let quote = if self.text { "'" } else { "" };
+                let given = &self.given;
+                Err(input(
+                    py,
+                    format!("{argument}: must be one of {}, not {quote}{given}{quote}", names.join(", ")),
+                ))
+            }
+        }
+    }
+}
+
+impl<'a, 'py> FromPyObject<'a, 'py> for Choice {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        match object.extract::<String>() {
+            Ok(name) => Ok(Choice::of(&name)),
+            Err(_) => Ok(Choice { given: object.repr()?.to_string(), text: false }),
+        }
+    }
+}
+
 fn unknown(py: Python<'_>, name: &str, given: &str, choices: &str) -> PyErr {
     input(py, format!("{name}: there is no '{given}'; there are {choices}"))
 }
@@ -215,7 +253,8 @@ fn read_schedule(py: Python<'_>, object: Option<&Bound<'_, PyAny>>) -> PyResult<
         };
     }
     let Ok(given) = object.cast::<PyDict>() else {
-        return Err(input(py, "schedule: expected None, 'adaptive', 'paper' or a dict".into()));
+        let given = object.repr()?;
+        return Err(input(py, format!("schedule: must be None, 'adaptive', 'paper' or a dict, not {given}")));
     };
     let mut schedule = Schedule::paper();
     let Schedule::Explicit { sharpness, point_noise, force_noise, stiffness_noise, updates } = &mut schedule

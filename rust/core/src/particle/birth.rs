@@ -1,8 +1,12 @@
 //! Particles anew, uniform by area over the surface.
 
+use std::mem::size_of;
+
 use super::columns::Columns;
 use super::frames::Frames;
+use super::memory::space;
 use super::options::{FilterOptions, Likelihood};
+use crate::error::{Error, Result};
 use crate::random::Stream;
 use crate::robot::Robot;
 use crate::surface::SurfacePoint;
@@ -11,6 +15,9 @@ use crate::surface::SurfacePoint;
 const LEAST: usize = 4_096;
 /// Relative standard deviation of a particle's own belief at the start, of force and of stiffness.
 const DOUBT: f64 = 0.5;
+
+/// Memory that one place takes: kept, and once more while it is made [bytes].
+pub(super) const PLACE: usize = size_of::<(u32, SurfacePoint)>() + size_of::<SurfacePoint>();
 
 /// Places where particles are born.
 #[derive(Debug, Clone)]
@@ -25,7 +32,9 @@ pub(super) struct Births {
 }
 
 impl Births {
-    pub fn new(robot: &Robot, wanted: &[usize], options: &FilterOptions) -> Self {
+    /// # Errors
+    /// [`Error::Input`] where none of the surface is exposed.
+    pub fn new(robot: &Robot, wanted: &[usize], options: &FilterOptions) -> Result<Self> {
         let surface = |index: usize| robot.links()[index].surface.as_ref();
         let areas: Vec<f64> = wanted
             .iter()
@@ -33,10 +42,12 @@ impl Births {
             .collect();
         let area: f64 = areas.iter().sum();
         let count = options.particles.max(LEAST);
-        let mut places = Vec::with_capacity(count);
+        let mut places = space(count)?;
         let mut share = 0.0;
         for (&index, own) in wanted.iter().zip(&areas) {
-            share += own / area;
+            if area > 0.0 {
+                share += own / area;
+            }
             // Rounded sums, so that the shares add up to all.
             let wanted = ((share * count as f64).round() as usize).saturating_sub(places.len());
             if let Some(surface) = surface(index) {
@@ -44,8 +55,11 @@ impl Births {
                 places.extend(surface.sample(wanted, seed).into_iter().map(|place| (index as u32, place)));
             }
         }
-        Births {
-            spacing: (area / places.len().max(1) as f64).sqrt(),
+        if places.is_empty() {
+            return Err(hidden(robot, wanted, options));
+        }
+        Ok(Births {
+            spacing: (area / places.len() as f64).sqrt(),
             places,
             log_stiffness: options.stiffness_range.map(f64::ln),
             log_radius: options.radius_range.map(f64::ln),
@@ -54,7 +68,7 @@ impl Births {
                 Likelihood::Gaussian => DOUBT * DOUBT,
                 Likelihood::Exponential => 0.0,
             },
-        }
+        })
     }
 
     /// Makes all particles anew, the first ones at the first places.
@@ -93,6 +107,7 @@ impl Births {
         particles.cross_variance[k] = 0.0;
         particles.stiffness_variance[k] = self.stiffness_variance * stiffness * stiffness;
         particles.log_weight[k] = 0.0;
+        particles.drift[k] = 1.0;
         particles.spread[k] = self.spacing;
         particles.fresh[k] = true;
     }
@@ -104,6 +119,16 @@ impl Births {
         let force = best.clamp(self.force[0], self.force[1]);
         (force, (DOUBT * force).powi(2))
     }
+}
+
+fn hidden(robot: &Robot, wanted: &[usize], options: &FilterOptions) -> Error {
+    let names: Vec<&str> = wanted.iter().map(|&index| robot.links()[index].name.as_str()).collect();
+    let argument = if options.links.is_some() { "links" } else { "robot" };
+    Error::Input(format!(
+        "{argument}: all of the surface of {} lies inside other parts of the same link; a particle filter needs a part \
+         of it exposed",
+        names.join(", ")
+    ))
 }
 
 /// Random numbers a birth uses at most.

@@ -2,6 +2,9 @@
 
 use nalgebra::Vector3;
 
+use super::memory::filled;
+use crate::error::Result;
+
 macro_rules! columns {
     ($($(#[$doc:meta])* $name:ident: $kind:ty = $empty:expr,)*) => {
         /// All particles; entry k of each column belongs to particle k.
@@ -17,9 +20,17 @@ macro_rules! columns {
         }
 
         impl Columns {
-            pub(super) fn new(count: usize) -> Self {
-                Columns { $($name: vec![$empty; count],)* }
+            pub(super) fn new(count: usize) -> Result<Self> {
+                Ok(Columns { $($name: filled($empty, count)?,)* })
             }
+
+            /// Makes all particles as they were at the start.
+            pub(super) fn clear(&mut self) {
+                $(self.$name.fill($empty);)*
+            }
+
+            /// Memory that one particle takes [bytes].
+            pub(super) const SIZE: usize = 0 $(+ std::mem::size_of::<$kind>())*;
 
             pub(super) fn slice(&mut self) -> Slice<'_> {
                 Slice { $($name: &mut self.$name,)* }
@@ -77,6 +88,9 @@ columns! {
     measured: f64 = 0.0,
     /// What the freedom of its friction costs in log-likelihood.
     penalty: f64 = 0.0,
+    /// Squared difference of the force found from the one predicted, over its variance, averaged over the last updates of
+    /// the particle and its ancestors: one where the obstacle explains how the force changes.
+    drift: f64 = 1.0,
     /// How far the particle is to be moved along the surface at random, a standard deviation; zero once it was [m].
     spread: f64 = 0.0,
     /// Drawn anew from the whole surface, not copied: never weighed yet.

@@ -52,6 +52,8 @@ pub struct Mode {
     pub stiffness: f64,
     /// Share of the particles' weight.
     pub probability: f64,
+    /// How much the force changes otherwise than the obstacle predicts: its mean squared error over its variance.
+    pub drift: f64,
     /// Root of the mean squared distance of the mode's particles from their mean [m].
     pub spread: f64,
 }
@@ -81,9 +83,12 @@ pub struct ContactEstimate {
     pub modes: Vec<Mode>,
     /// The data do not say which link or where on it.
     pub ambiguous: bool,
-    /// Whether the particles explain the measured torque.
+    /// Whether a single push explains the torques of the last updates (see [`residual`](Self::residual)): their mean
+    /// residual is within what the noise allows (a chi-square test at 99 %), and the force changes as an obstacle's
+    /// that stays. Where not, the contact is ambiguous, too.
     pub explained: bool,
-    /// Norm of the torque that the best particle leaves over [Nm], each joint weighed by its noise.
+    /// Root mean square, over all joints, of the torque that the best push leaves over, in standard deviations of the
+    /// stated noise: about one or less where all is explained.
     pub residual: f64,
     /// Effective number of particles before resampling.
     pub effective_samples: f64,
@@ -131,7 +136,7 @@ impl ContactEstimate {
         self.effective_samples = 0.0;
     }
 
-    /// Takes on what the modes say; `error` is the torque left over, as far as it is not averaged out [Nm].
+    /// Takes on what the modes say; `error` is the moment left over, as far as it is not averaged out [Nm].
     pub(super) fn set_contact(&mut self, modes: &Modes, frames: &Frames, springy: bool, error: f64) {
         self.contact = true;
         for (probability, &link) in self.link_probabilities.iter_mut().zip(&frames.wanted) {

@@ -136,6 +136,28 @@ impl Frames {
         }
     }
 
+    /// Takes from torques [Nm] what a force at a point of a link does (all in the link's frame).
+    pub fn subtract(
+        &self,
+        robot: &Robot,
+        link: usize,
+        point: &Vector3<f64>,
+        force: &Vector3<f64>,
+        torque: &mut [f64],
+    ) {
+        let pose = &self.links[link].pose;
+        let force = pose.rotation * force;
+        // About the reference origin of the kinematics.
+        let moment = (pose.transform_point(point) - self.kinematics.origin).cross(&force);
+        for &body in robot.chain(robot.links()[link].body) {
+            let state = &self.kinematics.bodies[body];
+            for (column, k) in robot.velocity_range(body).enumerate() {
+                let (linear, angular) = split(&motion_axis(robot.bodies[body].kind, state, column));
+                torque[k] -= linear.dot(&force) + angular.dot(&moment);
+            }
+        }
+    }
+
     /// Forgets the step before: no link has moved.
     pub fn stand(&mut self) {
         for &index in &self.wanted {

@@ -5,6 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 use super::columns::Columns;
 use super::estimate::Mode;
 use super::frames::Frames;
+use super::memory::{filled, space};
+use crate::error::Result;
 use crate::robot::Robot;
 
 /// Edge of a cell [m].
@@ -23,7 +25,7 @@ struct Cell {
     weight: f64,
     /// Weighted sum of points, link frame [m].
     sum: Vector3<f64>,
-    /// Another cell of the cluster; itself at the cluster's root.
+    /// Another cell of the cluster, in the end its root; itself at the root.
     parent: u32,
     /// Of the cluster, at its root.
     cluster: Moments,
@@ -38,6 +40,7 @@ pub(super) struct Moments {
     normal: Vector3<f64>,
     force: f64,
     stiffness: f64,
+    drift: f64,
 }
 
 impl Moments {
@@ -50,6 +53,7 @@ impl Moments {
         self.normal += particles.normal[k] * weight;
         self.force += weight * particles.force[k].max(0.0);
         self.stiffness += weight * particles.stiffness[k];
+        self.drift += weight * particles.drift[k];
     }
 
     fn join(&mut self, other: &Moments) {
@@ -59,6 +63,7 @@ impl Moments {
         self.normal += other.normal;
         self.force += other.force;
         self.stiffness += other.stiffness;
+        self.drift += other.drift;
     }
 
     /// Root of the mean squared distance from the mean [m].
@@ -88,15 +93,20 @@ pub(super) struct Modes {
 }
 
 impl Modes {
-    pub fn new(particles: usize, links: usize) -> Self {
-        Modes {
-            slots: vec![EMPTY; (2 * particles).next_power_of_two()],
-            cells: Vec::with_capacity(particles),
-            roots: Vec::with_capacity(particles),
+    /// Memory that one particle takes at most [bytes].
+    pub const SIZE: usize = std::mem::size_of::<Cell>() + 5 * std::mem::size_of::<u32>();
+
+    /// # Errors
+    /// [`Error::Memory`](crate::Error::Memory) where there is no space for so many particles.
+    pub fn new(particles: usize, links: usize) -> Result<Self> {
+        Ok(Modes {
+            slots: filled(EMPTY, (2 * particles).next_power_of_two())?,
+            cells: space(particles)?,
+            roots: space(particles)?,
             links: vec![Moments::default(); links],
             found: Vec::with_capacity(MOST_MODES),
             spread: 0.0,
-        }
+        })
     }
 
     /// Weight of the particles on a link.
@@ -182,14 +192,17 @@ impl Modes {
         }
     }
 
-    fn root(&self, mut cell: u32) -> u32 {
+    /// The cluster's root; halves the path to it, so that a long chain of cells is not walked twice.
+    fn root(&mut self, mut cell: u32) -> u32 {
         while self.cells[cell as usize].parent != cell {
-            cell = self.cells[cell as usize].parent;
+            let above = self.cells[cell as usize].parent;
+            self.cells[cell as usize].parent = self.cells[above as usize].parent;
+            cell = above;
         }
         cell
     }
 
-    /// Joins cells that touch, and gathers their moments at the roots.
+    /// Joins cells that touch, gathers their moments at the roots, and lets each cell name its root.
     fn connect(&mut self) {
         let heaviest = self.cells.iter().map(|cell| cell.weight).fold(0.0, f64::max);
         let cutoff = LIGHT * heaviest;
@@ -217,6 +230,9 @@ impl Modes {
                     self.cells[root as usize].cluster.join(&joined);
                 }
             }
+        }
+        for index in 0..self.cells.len() as u32 {
+            self.cells[index as usize].parent = self.root(index);
         }
     }
 
@@ -261,6 +277,7 @@ impl Modes {
             normal,
             stiffness: moments.stiffness / moments.weight,
             probability: moments.weight,
+            drift: moments.drift / moments.weight,
             spread,
         }
     }
@@ -275,8 +292,8 @@ impl Modes {
         let mut at = start.sum / start.weight;
         for _ in 0..CLIMB {
             let (mut sum, mut total) = (Vector3::zeros(), 0.0);
-            for (index, cell) in self.cells.iter().enumerate() {
-                if cell.key >> 48 == start.key >> 48 && self.root(index as u32) == root {
+            for cell in &self.cells {
+                if cell.parent == root {
                     let mean = cell.sum / cell.weight;
                     let weight = cell.weight * (-0.5 * (mean - at).norm_squared() / (spread * spread)).exp();
                     sum += mean * weight;

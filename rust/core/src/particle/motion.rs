@@ -14,7 +14,8 @@ use crate::surface::{ClosestPoint, Surface};
 
 /// Random numbers a particle and step uses at most.
 const DRAWS: u64 = 4;
-/// Every so many steps the nearest point is looked for on the whole link, in between next to the last one.
+/// Every so many steps the nearest point is looked for on the whole link, in between next to the last one; and it is
+/// seen whether the point is hidden inside another part of the link.
 const REFRESH: u64 = 32;
 
 /// What a step of motion needs to know.
@@ -51,7 +52,7 @@ impl Move {
                 Motion::Curvature => self.roll(surface, frames, number, particles, k),
                 // The contact moves with the link (the first baseline).
                 Motion::FixedOnLink => particles.force_variance[k] += self.loose_force.powi(2),
-                Motion::FixedInWorld => self.stay_in_world(surface, frames, particles, k),
+                Motion::FixedInWorld => self.stay_in_world(surface, frames, number, particles, k),
             }
             if particles.fresh[k] {
                 particles.fresh[k] = false;
@@ -96,6 +97,16 @@ impl Move {
         } else {
             surface.closest_point_near(&local, triangle)
         };
+        let near = if whole && surface.hides(&near.point, near.triangle) {
+            // A descent has led below another part. From outside, the nearest point of all is never hidden.
+            let near = surface.closest_point(&local);
+            if surface.hides(&near.point, near.triangle) {
+                particles.log_weight[k] = f64::NEG_INFINITY; // nothing touches the link there
+            }
+            near
+        } else {
+            near
+        };
         let (distance, normal) = signed(&near, &local);
         let change = particles.distance[k] - distance;
         particles.distance[k] = distance;
@@ -113,12 +124,22 @@ impl Move {
     }
 
     /// The contact stays where it is in the world (the second baseline).
-    fn stay_in_world(&self, surface: &Surface, frames: &Frames, particles: &mut Slice<'_>, k: usize) {
+    fn stay_in_world(
+        &self,
+        surface: &Surface,
+        frames: &Frames,
+        number: u64,
+        particles: &mut Slice<'_>,
+        k: usize,
+    ) {
         let frame = &frames.links[particles.link[k] as usize];
         let fixed = frame.before.transform_point(&particles.point[k]);
         let near =
             surface.closest_point_near(&frame.pose.inverse_transform_point(&fixed), particles.triangle[k]);
         place(particles, k, &near, near.normal);
+        if (number + self.step).is_multiple_of(REFRESH) && surface.hides(&near.point, near.triangle) {
+            particles.log_weight[k] = f64::NEG_INFINITY;
+        }
         particles.force_variance[k] += self.loose_force.powi(2);
     }
 }

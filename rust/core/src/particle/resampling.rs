@@ -2,9 +2,13 @@
 
 /// Weights from their logarithms, summing to one; returns the effective sample size.
 ///
-/// All alike where no particle has a weight.
+/// A logarithm that is no number is a weight of zero. All alike where no particle has a weight.
 pub(super) fn normalise(log_weights: &mut [f64], weights: &mut [f64]) -> f64 {
-    let greatest = log_weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let mut greatest = f64::NEG_INFINITY;
+    for log in log_weights.iter_mut() {
+        *log = weightless(*log);
+        greatest = greatest.max(*log);
+    }
     let mut sum = 0.0;
     for (weight, log) in weights.iter_mut().zip(log_weights.iter()) {
         *weight = (log - greatest).exp();
@@ -25,9 +29,20 @@ pub(super) fn normalise(log_weights: &mut [f64], weights: &mut [f64]) -> f64 {
     1.0 / squares
 }
 
+/// A log-weight that is not a number, or infinite, is that of a weight of zero.
+#[inline]
+fn weightless(log: f64) -> f64 {
+    if log < f64::INFINITY {
+        log
+    } else {
+        f64::NEG_INFINITY
+    }
+}
+
 /// Effective sample size of every `stride`-th particle under `log_weight`, as a share.
 pub(super) fn effective_share(count: usize, stride: usize, log_weight: impl Fn(usize) -> f64) -> f64 {
-    let greatest = (0..count).step_by(stride).map(&log_weight).fold(f64::NEG_INFINITY, f64::max);
+    let log_weight = |k: usize| weightless(log_weight(k));
+    let greatest = (0..count).step_by(stride).map(log_weight).fold(f64::NEG_INFINITY, f64::max);
     let (mut sum, mut squares, mut taken) = (0.0, 0.0, 0.0);
     for k in (0..count).step_by(stride) {
         let weight = (log_weight(k) - greatest).exp();
@@ -42,10 +57,12 @@ pub(super) fn effective_share(count: usize, stride: usize, log_weight: impl Fn(u
     }
 }
 
-/// Draws `parents.len()` indices in proportion to `weights` (which sum to one), ascending; `offset` is in [0, 1).
+/// Draws `parents.len()` indices in proportion to `weights` (which sum to one), ascending; `offset` is in [0, 1). None has a
+/// weight of zero, unless all have.
 pub(super) fn systematic(weights: &[f64], offset: f64, parents: &mut [u32]) {
     let step = 1.0 / parents.len() as f64;
-    let last = weights.len().saturating_sub(1);
+    // Rounded weights may sum to less than the last tooth of the comb.
+    let last = weights.iter().rposition(|weight| *weight > 0.0).unwrap_or(0);
     let (mut index, mut sum) = (0, weights.first().copied().unwrap_or(1.0));
     for (k, parent) in parents.iter_mut().enumerate() {
         let at = (k as f64 + offset) * step;
@@ -73,6 +90,26 @@ mod tests {
             }
             assert!(parents.is_sorted());
         }
+    }
+
+    #[test]
+    fn no_copy_is_made_of_a_particle_without_weight() {
+        // They sum to less than one by rounding, and more.
+        let weights = [0.0, 0.3, 0.0, 0.699_999, 0.0, 0.0];
+        let mut parents = [0; 1000];
+        systematic(&weights, 0.999_999, &mut parents);
+        assert!(parents.iter().all(|parent| weights[*parent as usize] > 0.0));
+    }
+
+    #[test]
+    fn a_log_weight_that_is_no_number_is_a_weight_of_zero() {
+        let mut weights = [0.0; 4];
+        let mut logs = [f64::NAN, 0.0, f64::INFINITY, 3f64.ln()];
+        let effective = normalise(&mut logs, &mut weights);
+        assert!((weights[3] - 0.75).abs() < 1e-12 && weights[0] == 0.0 && weights[2] == 0.0, "{weights:?}");
+        assert!((effective - 1.6).abs() < 1e-12);
+        let share = effective_share(4, 1, |k| [f64::NAN, 0.0, f64::INFINITY, 3f64.ln()][k]);
+        assert!((share - 0.4).abs() < 1e-12);
     }
 
     #[test]

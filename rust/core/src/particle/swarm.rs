@@ -1,14 +1,17 @@
 //! All that an update works on, and its course.
 
+use std::mem::size_of;
 use std::sync::Arc;
 
 use super::adaptation::Adaptation;
-use super::birth::Births;
+use super::birth::{Births, PLACE};
 use super::columns::{Columns, Slice};
 use super::estimate::{ContactEstimate, Event};
+use super::fit::{Fit, Push};
 use super::frames::Frames;
 use super::likelihood::{misfit, Belief, Weighing};
 use super::measurement::Measuring;
+use super::memory::{filled, space};
 use super::modes::{Modes, MOST_MODES};
 use super::motion::Move;
 use super::options::{FilterOptions, Likelihood, Motion};
@@ -18,7 +21,7 @@ use super::resampling::{effective_share, normalise, systematic};
 use super::schedule::Noise;
 use crate::error::Result;
 use crate::random::Stream;
-use crate::robot::Robot;
+use crate::robot::{JointKind, Robot};
 
 /// A contact ends below this share of the thresholds at which it begins.
 const RELEASE: f64 = 1.0 / 3.0;
@@ -31,6 +34,9 @@ const PROBES: usize = 1024;
 /// A likelihood is widened so often at most, each time to twice the variance.
 const WIDENINGS: usize = 40;
 
+/// Memory that one particle takes [bytes].
+const PARTICLE: usize = 2 * Columns::SIZE + Modes::SIZE + PLACE + size_of::<f64>() + size_of::<u32>();
+
 #[derive(Debug, Clone)]
 pub(super) struct Swarm {
     robot: Arc<Robot>,
@@ -40,6 +46,8 @@ pub(super) struct Swarm {
     /// The measurement: torques, and their noise.
     torque: Vec<f64>,
     noise: Vec<f64>,
+    /// Whether a velocity variable is a rotation's.
+    turning: Vec<bool>,
     felt: bool,
     pub frames: Frames,
     births: Births,
@@ -48,6 +56,7 @@ pub(super) struct Swarm {
     pub weights: Vec<f64>,
     parents: Vec<u32>,
     modes: Modes,
+    fit: Fit,
     pub estimate: ContactEstimate,
     random: Stream,
     adaptation: Adaptation,
@@ -66,20 +75,25 @@ impl Swarm {
         let wanted = options.check(&robot)?;
         let nv = robot.nv();
         let count = options.particles;
+        // All of it at once, so that a part is not filled in vain.
+        drop(space::<[u8; PARTICLE]>(count)?);
+        let torque_noise = FilterOptions::per_joint("torque_noise", &options.torque_noise, nv)?;
         Ok(Self {
-            torque_noise: FilterOptions::per_joint("torque_noise", &options.torque_noise, nv)?,
+            fit: Fit::new(torque_noise.clone(), options.relative_noise),
+            torque_noise,
             threshold: FilterOptions::per_joint("torque_threshold", &options.torque_threshold, nv)?,
             torque: vec![0.0; nv],
             noise: vec![1.0; nv],
+            turning: turning(&robot),
             felt: false,
-            births: Births::new(&robot, &wanted, &options),
+            births: Births::new(&robot, &wanted, &options)?,
             estimate: ContactEstimate::new(wanted.len(), MOST_MODES),
             frames: Frames::new(&robot, wanted),
-            particles: Columns::new(count),
-            spare: Columns::new(count),
-            weights: vec![1.0 / count as f64; count],
-            parents: vec![0; count],
-            modes: Modes::new(count, robot.links().len()),
+            particles: Columns::new(count)?,
+            spare: Columns::new(count)?,
+            weights: filled(1.0 / count as f64, count)?,
+            parents: filled(0, count)?,
+            modes: Modes::new(count, robot.links().len())?,
             random: Stream::new(options.seed),
             adaptation: Adaptation::default(),
             step: 0,
@@ -98,7 +112,7 @@ impl Swarm {
         self.estimate.clear();
         self.estimate.event = Event::None;
         self.estimate.updates = 0;
-        self.particles = Columns::new(self.particles.len());
+        self.particles.clear();
         self.weights.fill(1.0 / self.particles.len() as f64);
     }
 
@@ -240,6 +254,7 @@ impl Swarm {
         let mut weighing = Weighing {
             likelihood: self.options.likelihood,
             variance: 1.0,
+            noise: self.adaptation.noise(),
             stiffness_range: self.options.stiffness_range,
         };
         if let Some(sharpness) = noise.sharpness {
@@ -295,27 +310,67 @@ impl Swarm {
         let measured = self.frames.measured;
         let misfit = misfit(&Belief::of(&self.particles, best));
         let share = if measured > 0.0 { (misfit / measured).sqrt() } else { 0.0 };
-        Left { misfit, share, joints: self.torque.len() }
+        Left { best, misfit, share, joints: self.torque.len() }
+    }
+
+    /// Moment at the turning joints per standard deviation of its noise, where the torque is [Nm].
+    fn moment_per_deviation(&self) -> f64 {
+        let (mut moment, mut deviations) = (0.0, 0.0);
+        for ((torque, noise), _) in
+            self.torque.iter().zip(&self.noise).zip(&self.turning).filter(|(_, turns)| **turns)
+        {
+            moment += torque * torque;
+            deviations += (torque / noise).powi(2);
+        }
+        if deviations > 0.0 {
+            (moment / deviations).sqrt()
+        } else {
+            0.0
+        }
     }
 
     fn tell(&mut self, event: Event, effective: f64, moved: f64, left: &Left) {
-        let explained = !left.is_much(UNEXPLAINED);
-        let norm = self.torque.iter().map(|torque| torque * torque).sum::<f64>().sqrt();
-        let Self { estimate, modes, frames, .. } = self;
+        let error = left.misfit.sqrt() * self.moment_per_deviation() * self.adaptation.averaged();
+        let Self { estimate, modes, frames, fit, robot, particles, options, torque, .. } = self;
         let sure = (estimate.contact && !estimate.ambiguous)
             .then(|| (estimate.point, MOVED_ON + 3.0 * estimate.covariance.trace().sqrt()));
         estimate.clear();
         estimate.event = event;
         estimate.effective_samples = effective;
-        estimate.residual = left.share * norm;
-        estimate.explained = explained;
-        let springy = self.options.motion == Motion::Curvature;
-        estimate.set_contact(modes, frames, springy, left.share * norm * self.adaptation.averaged());
+        let springy = options.motion == Motion::Curvature;
+        estimate.set_contact(modes, frames, springy, error);
         if let (Event::Continued, Some((before, reach))) = (event, sure) {
             if (estimate.point - before).norm() > reach + moved {
                 estimate.event = Event::Changed;
             }
         }
+        if estimate.event != Event::Continued {
+            fit.restart();
+        }
+        let Some(link) = estimate.link else { return };
+        let pose = &frames.links[link].pose;
+        let told = Push {
+            robot,
+            frames,
+            measurement: options.measurement,
+            link,
+            point: pose.inverse_transform_point(&estimate.point),
+            normal: pose.inverse_transform_vector(&estimate.normal),
+        };
+        // The mean of a mode need not fit where the surface is curved or has an edge; its best particle does.
+        let best = (particles.point[left.best], particles.normal[left.best]);
+        let near = particles.link[left.best] as usize == link && (best.0 - told.point).norm() < MOVED_ON;
+        let other = near.then_some(Push { point: best.0, normal: best.1, ..told });
+        estimate.residual = fit.take_in(&told, other.as_ref(), torque);
+        let [softest, stiffest] = options.stiffness_range;
+        let least = softest * (stiffest / softest).powf(SOFT);
+        let obstacle =
+            estimate.modes.first().is_none_or(|mode| mode.drift <= MOST_DRIFT && mode.stiffness >= least);
+        // Without a spring and a belief of it nothing is predicted.
+        let predicted = springy && options.likelihood == Likelihood::Gaussian;
+        estimate.explained = fit.explained() && (obstacle || !predicted);
+        // What is not explained is never sure.
+        estimate.ambiguous |= !estimate.explained;
     }
 
     /// Draws particles anew, a share of them from the whole surface: those behind the others, whose number is returned.
@@ -363,8 +418,26 @@ impl Swarm {
     }
 }
 
+/// Whether each velocity variable is a rotation's.
+fn turning(robot: &Robot) -> Vec<bool> {
+    let mut turning = vec![false; robot.nv()];
+    for body in 0..robot.bodies.len() {
+        let range = robot.velocity_range(body);
+        // A free flyer's linear part comes first.
+        let first = match robot.bodies[body].kind {
+            JointKind::Prismatic => range.end,
+            JointKind::FreeFlyer => range.start + 3,
+            JointKind::Revolute | JointKind::Continuous => range.start,
+        };
+        turning[first..range.end].fill(true);
+    }
+    turning
+}
+
 /// Torque that is left over.
 pub(super) struct Left {
+    /// The best particle.
+    best: usize,
     /// Its squared norm in units of the noise.
     pub misfit: f64,
     /// Its part of what was measured.
@@ -379,9 +452,13 @@ impl Left {
     }
 }
 
-/// Above this share of the torque that the best particle leaves over, nothing is explained.
-const UNEXPLAINED: f64 = 0.5;
-/// Above this one the contact is looked for on the whole surface, by a share of the particles.
+/// Mean squared error of predicted forces over their variance that an obstacle of the kind sought has at most: that of
+/// noise three times as large as stated.
+const MOST_DRIFT: f64 = 2.0;
+/// A stiffness in this first part of its range, by its logarithm, is that of no obstacle: what pulls, carries or turns a
+/// link keeps its force while the link moves, and ends at the range's soft end.
+const SOFT: f64 = 0.15;
+/// Above this share of the torque that the best particle leaves over, the contact is looked for on the whole surface, by a share of the particles.
 const RESCUE: f64 = 0.2;
 const RESCUERS: f64 = 0.5;
 /// Updates from one such search to the next: it costs as much as an update.

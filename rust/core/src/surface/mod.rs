@@ -167,6 +167,12 @@ impl Surface {
         self.nearest(p, None)
     }
 
+    /// Whether a point of the surface lies inside another closed part, where nothing outside the link reaches it.
+    /// `triangle` is the one that holds the point, or -1.
+    pub fn hides(&self, point: &Vector3<f64>, triangle: i64) -> bool {
+        self.solids.len() > 1 && self.sampler.hides(&self.solids, point, triangle)
+    }
+
     fn nearest(&self, p: &Vector3<f64>, warm_start: Option<i64>) -> ClosestPoint {
         let mut best = ClosestPoint {
             point: Vector3::repeat(f64::NAN),

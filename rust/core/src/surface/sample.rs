@@ -75,6 +75,15 @@ impl Sampler {
         (points, attempt)
     }
 
+    /// Whether a point of a part, which holds `triangle` where that is a mesh, is inside another one.
+    pub fn hides(&self, solids: &[Solid], point: &Vector3<f64>, triangle: i64) -> bool {
+        solids.iter().any(|solid| {
+            let own = matches!(solid, Solid::Mesh { mesh, first }
+                if triangle >= *first as i64 && triangle < (first + mesh.triangles.len()) as i64);
+            !own && solid.contains(point, self.tolerance)
+        })
+    }
+
     fn exposed(&self, solids: &[Solid], part: usize, sample: &SurfacePoint) -> bool {
         solids.iter().enumerate().all(|(other, solid)| {
             if other == part || !solid.closed() {
