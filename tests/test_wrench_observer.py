@@ -110,3 +110,32 @@ def test_it_starts_without_a_false_contact() -> None:
     # From the first tick on, 1700 N act on the feet that neither the observer nor the sensors knew before.
     start = run("chest", watched_from=100).collision[:140]
     assert np.abs(start).max() < 0.01
+
+
+@pytest.mark.parametrize("gain", [50.0, 200.0])
+@pytest.mark.parametrize("silent", [(0, 1), (0, 4), (0, 40), (30, 80)])
+def test_a_wanted_sensor_that_comes_back_raises_no_alarm(gain: float, silent: tuple[int, int]) -> None:
+    """1700 N stand on sensors that say nothing at first, or for a while."""
+    robot, model = cs.Robot.named("atlas"), named_model("atlas")
+    q = posture(model, 7)
+    control = controller(model, q)
+    geoms = named_geoms("atlas", conaffinity=FLOOR_TYPE)
+    atlas = SimulatedRobot(model, dt=DT, geoms=geoms, floor=Floor(), sensors=SENSORS)
+    monitor = cs.ContactMonitor(
+        robot, dt=DT, sensors=SENSORS, wanted_contacts=FEET, observer_gain=gain, torque_threshold=0.5
+    )
+    atlas.reset(q)
+    for _ in range(1000):
+        atlas.step(control.torque(atlas.q, atlas.v))
+    feet = [NAMES.index(name) for name in FEET]
+    left_out = []
+    for tick in range(500):
+        sample = atlas.step(control.torque(atlas.q, atlas.v))
+        readings = sample.wrenches.copy()
+        if silent[0] <= tick < silent[1]:
+            readings[feet] = np.nan
+        report = monitor.update(sample.q, sample.v, sample.tau_mean, readings)
+        assert not report.collision, tick
+        left_out.append(len(report.joints_left_out))
+    # Then the legs are watched again.
+    assert max(left_out) > left_out[-1]

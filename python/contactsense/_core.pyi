@@ -251,7 +251,9 @@ class ContactMonitor:
         wrench_threshold: ArrayLike | None = None,
         wrench_gain: float | None = None,
         bias_time_constant: float | None = None,
+        bias_limit: float | None = None,
         bias_settle_time: float | None = None,
+        hysteresis: ArrayLike | None = None,
         hold_time: float | None = None,
         max_contacts: int | None = None,
         pushing: bool = True,
@@ -264,9 +266,16 @@ class ContactMonitor:
         tau: ArrayLike,
         wrenches: ArrayLike | None = None,
         *,
+        dt: float | None = None,
         friction: ArrayLike | None = None,
     ) -> ContactReport: ...
     def reset(self) -> None: ...
+    @property
+    def robot(self) -> Robot: ...
+    @property
+    def dt(self) -> float: ...
+    @property
+    def bias(self) -> NDArray[np.float64]: ...
 
 @final
 class ContactReport:
@@ -276,6 +285,8 @@ class ContactReport:
     def collision(self) -> bool: ...
     @property
     def onset(self) -> bool: ...
+    @property
+    def remainder_learned(self) -> bool: ...
     @property
     def links(self) -> tuple[str, ...]: ...
     @property

@@ -46,7 +46,7 @@ fn tick(c: &mut Criterion) {
         };
         let mut monitor = ContactMonitor::new(robot, &options).expect("valid settings");
         group.bench_function(name, |b| {
-            b.iter(|| monitor.update(black_box(&q), &rest, &tau, None, None).expect("valid input"))
+            b.iter(|| monitor.update(black_box(&q), &rest, &tau, None, None, None).expect("valid input"))
         });
         assert!(!monitor.report().collision);
     }

@@ -132,13 +132,17 @@ fn a_tick_allocates_nothing() {
         let weight = robot.inverse_dynamics(&q, &still, &still).expect("valid input");
         let mut report = ContactReport::default();
         let mut seen = 0;
+        let mut ticks = 0;
         let mut tick = |monitor: &mut ContactMonitor, torque: Option<&Vec<f64>>| {
+            ticks += 1;
+            // Now and then the step is measured.
+            let dt = (ticks % 3 == 0).then_some(1.5e-3);
             let mut tau = weight.clone();
             if let Some(torque) = torque {
                 tau.iter_mut().zip(torque).for_each(|(tau, ext)| *tau -= ext);
             }
             let before = ALLOCATIONS.load(Ordering::Relaxed);
-            monitor.update(&q, &still, &tau, None, None).expect("valid input");
+            monitor.update(&q, &still, &tau, None, None, dt).expect("valid input");
             let after = ALLOCATIONS.load(Ordering::Relaxed);
             monitor.report_into(&mut report);
             seen += usize::from(!report.isolation.contacts.is_empty());
@@ -172,12 +176,14 @@ fn a_tick_allocates_nothing() {
         let options =
             MonitorOptions { isolation, bias_time_constant: Some(0.02), ..MonitorOptions::new(1e-3) };
         let mut monitor = ContactMonitor::new(robot.clone(), &options).expect("valid options");
-        monitor.update(&q, &v, &tau, None, Some(&readings)).expect("valid input");
+        monitor.update(&q, &v, &tau, None, Some(&readings), None).expect("valid input");
         monitor.report_into(&mut report);
         let work = || {
             for k in 0..40 {
                 let row = if k % 10 == 9 { &silent } else { &readings };
-                monitor.update(&q, &v, &tau, None, Some(row)).expect("valid input");
+                // Nominal, another and far too long for a step.
+                let dt = [None, Some(2e-3), Some(1.0)][k % 3];
+                monitor.update(&q, &v, &tau, None, Some(row), dt).expect("valid input");
             }
         };
         assert_eq!(allocations(work), 0, "monitor of {} with sensors", robot.name());

@@ -19,6 +19,11 @@ fn any_number() -> impl Strategy<Value = f64> {
     ]
 }
 
+/// A measured time step, or none.
+fn any_step() -> impl Strategy<Value = Option<f64>> {
+    prop_oneof![4 => Just(None), 4 => (1e-4..0.03).prop_map(Some), 1 => any_number().prop_map(Some)]
+}
+
 fn vector(length: usize) -> impl Strategy<Value = Vec<f64>> {
     prop_oneof![
         9 => proptest::collection::vec(any_number(), length),
@@ -96,7 +101,7 @@ proptest! {
             monitor.report_into(&mut report);
             let before = report.clone();
             let good = sensible(&v, 7) && sensible(&tau, 7);
-            match monitor.update(&q, &v, &tau, None, None) {
+            match monitor.update(&q, &v, &tau, None, None, None) {
                 Ok(()) => prop_assert!(good),
                 Err(error) => {
                     prop_assert!(!good && matches!(error, Error::Input(_)), "{error}");
@@ -110,7 +115,7 @@ proptest! {
 
     #[test]
     fn the_monitor_with_sensors_refuses_or_answers(
-        ticks in proptest::collection::vec((vector(7), vector(7), vector(12)), 1..20)
+        ticks in proptest::collection::vec((vector(7), vector(7), vector(12), any_step()), 1..20)
     ) {
         let robot = common::arm();
         let q = common::configuration(&robot, 0.2);
@@ -126,13 +131,18 @@ proptest! {
         let mut monitor = ContactMonitor::new(robot.clone(), &options).unwrap();
         let mut report = ContactReport::default();
         let mut silent_before = [false; 2];
-        for (v, tau, readings) in ticks {
+        for (v, tau, readings, dt) in ticks {
             monitor.report_into(&mut report);
             let before = report.clone();
             let fits = |x: &f64| x.is_nan() || x.abs() < 1e60;
             let rows = readings.as_chunks::<6>().0;
-            let good = sensible(&v, 7) && sensible(&tau, 7) && rows.len() == 2 && rows.as_flattened().iter().all(fits);
-            match monitor.update(&q, &v, &tau, None, Some(rows)) {
+            let timed = dt.is_none_or(|dt| (1e-9..=1e9).contains(&dt));
+            let good = timed
+                && sensible(&v, 7)
+                && sensible(&tau, 7)
+                && rows.len() == 2
+                && rows.as_flattened().iter().all(fits);
+            match monitor.update(&q, &v, &tau, None, Some(rows), dt) {
                 Ok(()) => {
                     prop_assert!(good);
                     monitor.report_into(&mut report);

@@ -25,7 +25,7 @@ pub struct PyContactReport {
 
 #[pymethods]
 impl PyContactReport {
-    /// Since the first call [s].
+    /// Since the first accepted call [s].
     #[getter]
     fn time(&self) -> f64 {
         self.report.time
@@ -41,6 +41,13 @@ impl PyContactReport {
     #[getter]
     fn onset(&self) -> bool {
         self.report.onset
+    }
+
+    /// Whether a torque that stood still became the bias in this tick, which ended the contact: what `hysteresis` may have
+    /// left, what outlasted `bias_settle_time`, or no torque at all where the bias before was wrong.
+    #[getter]
+    fn remainder_learned(&self) -> bool {
+        self.report.remainder_learned
     }
 
     /// Links that detection alone names: on every branch those between the last joint or sensor over its threshold and
@@ -118,12 +125,16 @@ impl PyContactReport {
 /// external wrenches: a scalar, `(6,)`, or `(n_sensors, 6)` [N, Nm], default 2. `wrench_gain` [1/s]: of the low-pass on
 /// external wrenches (readings and velocities are noisy), default the smallest of
 /// `observer_gain`, and none where that is at least `0.5 / dt`; infinite for none. `observer_gain`: scalar or `(nv,)` [1/s], default 50. `torque_threshold`: scalar
-/// or `(nv,)` [Nm, N], default 0.5. `bias_time_constant` [s]: tracks the torque that a model's errors feign while
-/// nothing touches; the first time constant is taken as free of contact. `hold_time` [s], default 0.02: a signal stays on so
+/// or `(nv,)` [Nm, N], default 0.5. `bias_time_constant` [s]: tracks the torque that errors of the model cause while
+/// nothing touches; nothing is detected in the first time constant, and what touches in less than half of it is not learnt.
+/// `bias_limit`: greatest bias of each joint in thresholds, default 30. `bias_settle_time` [s]: a torque that stands still
+/// for so long becomes the bias. `hysteresis`: share of its greatest torque in a contact that a joint's gear or sensor may
+/// keep after it, scalar or `(nv,)`, default 0.2; such a remainder becomes the bias up to two thresholds. `hold_time` [s], default 0.02: a signal stays on so
 /// long after it was last over its threshold. `max_contacts`, `pushing`, `locate_within`: as in `ContactIsolator`. Raises `InputError` that
 /// names the argument.
 #[pyclass(name = "ContactMonitor", module = "contactsense._core")]
 pub struct PyContactMonitor {
+    robot: Py<PyRobot>,
     monitor: ContactMonitor,
     sensors: Arc<[String]>,
 }
@@ -132,8 +143,8 @@ pub struct PyContactMonitor {
 impl PyContactMonitor {
     #[new]
     #[pyo3(signature = (robot, *, dt, sensors=None, wanted_contacts=None, observer_gain=None, torque_threshold=None,
-                        wrench_threshold=None, wrench_gain=None, bias_time_constant=None, bias_settle_time=None, hold_time=None, max_contacts=None, pushing=true,
-                        locate_within=Number(0.05)))]
+                        wrench_threshold=None, wrench_gain=None, bias_time_constant=None, bias_limit=None, bias_settle_time=None, hysteresis=None, hold_time=None,
+                        max_contacts=None, pushing=true, locate_within=Number(0.05)))]
     #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
         robot: &Bound<'_, PyRobot>,
@@ -145,7 +156,9 @@ impl PyContactMonitor {
         wrench_threshold: Option<&Bound<'_, PyAny>>,
         wrench_gain: Option<Number>,
         bias_time_constant: Option<Number>,
+        bias_limit: Option<Number>,
         bias_settle_time: Option<Number>,
+        hysteresis: Option<&Bound<'_, PyAny>>,
         hold_time: Option<Number>,
         max_contacts: Option<&Bound<'_, PyAny>>,
         pushing: bool,
@@ -169,6 +182,12 @@ impl PyContactMonitor {
         }
         options.bias_time_constant = bias_time_constant.map(|number| number.0);
         options.wrench_gain = wrench_gain.map(|number| number.0);
+        if let Some(limit) = bias_limit {
+            options.bias_limit = limit.0;
+        }
+        if let Some(hysteresis) = hysteresis {
+            options.hysteresis = scalar_or_vector("hysteresis", hysteresis)?;
+        }
         options.bias_settle_time = bias_settle_time.map(|number| number.0);
         if let Some(sensors) = sensors {
             options.isolation.sensors = self::sensors(sensors)?;
@@ -178,14 +197,18 @@ impl PyContactMonitor {
         }
         let monitor = ContactMonitor::new(robot.get().0.clone(), &options);
         let monitor = monitor.map_err(|error| to_python(robot.py(), error))?;
-        Ok(Self { sensors: monitor.sensor_names().into(), monitor })
+        Ok(Self { robot: robot.clone().unbind(), sensors: monitor.sensor_names().into(), monitor })
     }
 
     /// One tick: `q` `(nq,)`, `v` `(nv,)`, `tau` and `friction` `(nv,)` or `(nv - 6,)` for a floating base.
     ///
     /// `wrenches` `(n_sensors, 6)`: the sensors' readings, sensor axes [N, Nm]; a NaN in one leaves its sensor out for this
-    /// tick. Raises `InputError` that names the argument; the state is then unchanged.
-    #[pyo3(signature = (q, v, tau, wrenches=None, *, friction=None))]
+    /// tick. `dt` [s]: time since the last accepted sample, for clocks that jitter and samples that were lost; by default
+    /// the constructor's, and as much again for every sample refused in between. Over a longer step than 50 ms (or five
+    /// times the constructor's) the external torque is kept as it was. Raises `InputError` that names the argument; the
+    /// state is then unchanged but for the time that passed.
+    #[pyo3(signature = (q, v, tau, wrenches=None, *, dt=None, friction=None))]
+    #[allow(clippy::too_many_arguments)] // the arguments of the Python method
     fn update(
         &mut self,
         py: Python<'_>,
@@ -193,17 +216,44 @@ impl PyContactMonitor {
         v: &Bound<'_, PyAny>,
         tau: &Bound<'_, PyAny>,
         wrenches: Option<&Bound<'_, PyAny>>,
+        dt: Option<Number>,
         friction: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyContactReport> {
-        let (q, v, tau) = (Vector::new("q", q)?, Vector::new("v", v)?, Vector::new("tau", tau)?);
-        let friction = Vector::optional("friction", friction)?;
+        let dt = dt.map(|dt| dt.0);
+        let converted = (|| {
+            let (q, v, tau) = (Vector::new("q", q)?, Vector::new("v", v)?, Vector::new("tau", tau)?);
+            let friction = Vector::optional("friction", friction)?;
+            Ok((q, v, tau, friction, wrenches.map(Readings::new).transpose()?))
+        })();
+        // An array that cannot be read is a sample refused, too.
+        let (q, v, tau, friction, wrenches) = converted.inspect_err(|_: &PyErr| self.monitor.miss(dt))?;
         let friction = friction.as_ref().map(|friction| friction.slice());
-        let wrenches = wrenches.map(Readings::new).transpose()?;
         let wrenches = wrenches.as_ref().map(|wrenches| wrenches.rows());
-        let done = self.monitor.update(q.slice(), v.slice(), tau.slice(), friction, wrenches);
+        let done = self.monitor.update(q.slice(), v.slice(), tau.slice(), friction, wrenches, dt);
         done.map_err(|error| to_python(py, error))?;
         let report = self.monitor.report();
         Ok(PyContactReport { robot: self.monitor.robot().clone(), sensors: self.sensors.clone(), report })
+    }
+
+    /// The robot that is monitored.
+    #[getter]
+    fn robot(&self, py: Python<'_>) -> Py<PyRobot> {
+        self.robot.clone_ref(py)
+    }
+
+    /// Time between two calls that is assumed where `update` is given none [s].
+    #[getter]
+    fn dt(&self) -> f64 {
+        self.monitor.dt()
+    }
+
+    /// The bias that is subtracted, `(nv,)` [Nm, N]; zeros without `bias_time_constant`.
+    #[getter]
+    fn bias<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        match self.monitor.bias() {
+            Some(bias) => PyArray1::from_slice(py, bias),
+            None => PyArray1::zeros(py, self.monitor.robot().nv(), false),
+        }
     }
 
     /// Forgets all ticks, the bias too.

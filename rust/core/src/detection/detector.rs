@@ -12,7 +12,7 @@ use crate::sensor::{is_known, SensorTree};
 
 /// Element-wise thresholds; a signal stays on for a hold time after it was last over its threshold.
 #[derive(Debug, Clone)]
-pub struct Detector {
+pub(crate) struct Detector {
     robot: Arc<Robot>,
     threshold: Vec<f64>,
     hold_time: f64,
@@ -29,22 +29,13 @@ pub struct Detector {
 }
 
 impl Detector {
-    /// `threshold` per velocity variable, or one for all [Nm; N for prismatic joints and a base's linear part];
+    /// `threshold` per velocity variable, or one for all [Nm; N for prismatic joints and a base's linear part], and on the
+    /// sensors' wrenches: one number for all [N, Nm], six for each sensor, or six times the number of sensors;
     /// `hold_time` [s].
     ///
     /// # Errors
     /// [`Error::Input`] names the argument.
-    pub fn new(robot: Arc<Robot>, threshold: &[f64], hold_time: f64) -> Result<Self> {
-        let sensors = SensorTree::new(&robot, &[])?;
-        Self::with_sensors(robot, threshold, &sensors, &[1.0], hold_time)
-    }
-
-    /// The same with sensors, and a threshold on their wrenches: one number for all [N, Nm], six for each sensor, or
-    /// six times the number of sensors.
-    ///
-    /// # Errors
-    /// [`Error::Input`] names the argument.
-    pub fn with_sensors(
+    pub fn new(
         robot: Arc<Robot>,
         threshold: &[f64],
         sensors: &SensorTree,
@@ -72,14 +63,10 @@ impl Detector {
         })
     }
 
-    /// One tick of `dt` [s] with the external torque `(nv,)`; true while there is a contact.
-    pub fn update(&mut self, external_torque: &[f64], dt: f64) -> bool {
-        self.update_sensed(external_torque, &[], dt)
-    }
-
-    /// The same with the external wrenches that the sensors see, NaN where one is left out. A sensor over its
-    /// threshold says that the contact is behind it, one under it that it is not.
-    pub fn update_sensed(&mut self, external_torque: &[f64], wrenches: &[Vector6<f64>], dt: f64) -> bool {
+    /// One tick of `dt` [s] with the external torque `(nv,)`, finite, and the external wrenches that the sensors see, NaN
+    /// where one is left out; none without sensors. A sensor over its threshold says that the contact is behind it, one
+    /// under it that it is not.
+    pub fn update(&mut self, external_torque: &[f64], wrenches: &[Vector6<f64>], dt: f64) {
         let before = self.collision;
         self.collision = false;
         for ((remaining, threshold), torque) in
@@ -102,7 +89,6 @@ impl Detector {
             Signal::Sensor(sensor) => wrench_remaining[sensor] >= 0.0,
         };
         tree.region(over, |sensor| !is_known[sensor], links);
-        self.collision
     }
 
     /// Whether a sensor's external wrench is over its threshold in any component.

@@ -4,6 +4,5 @@ mod detector;
 mod signal_tree;
 mod tips;
 
-pub use detector::Detector;
-pub(crate) use detector::{check_threshold, check_wrench_threshold};
-pub use tips::TipSearch;
+pub(crate) use detector::{check_threshold, check_wrench_threshold, Detector};
+pub(crate) use tips::TipSearch;

@@ -4,7 +4,7 @@ use crate::robot::{Robot, WORLD};
 
 /// Finds the bodies whose joint feels a contact while no joint behind it does.
 #[derive(Debug, Clone)]
-pub struct TipSearch {
+pub(crate) struct TipSearch {
     felt_behind: Vec<bool>,
     tips: Vec<usize>,
 }

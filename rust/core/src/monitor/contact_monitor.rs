@@ -3,97 +3,30 @@
 use std::sync::Arc;
 
 use super::bias::BiasTracker;
+use super::clock::SampleClock;
+use super::options::MonitorOptions;
 use super::release::ReleaseDetector;
+use super::report::ContactReport;
 use super::sensing::Sensing;
-use nalgebra::Vector6;
-
 use crate::detection::Detector;
 use crate::error::{Error, Result};
-use crate::isolation::{ContactIsolator, Isolation, IsolatorOptions};
-use crate::observer::MomentumObserver;
+use crate::isolation::ContactIsolator;
+use crate::observer::{check_time_step, MomentumObserver, Step};
 use crate::robot::Robot;
 use crate::sensor::{is_known, SensorTree};
-
-/// Settings of a [`ContactMonitor`].
-#[derive(Debug, Clone)]
-pub struct MonitorOptions {
-    /// Time between two calls [s].
-    pub dt: f64,
-    /// Per velocity variable, or one for all [1/s].
-    pub observer_gain: Vec<f64>,
-    /// Of the low-pass on the sensors' external wrenches [1/s], infinite for no low-pass. If none, the
-    /// observer's smallest, and no low-pass where that is at least half the tick rate.
-    pub wrench_gain: Option<f64>,
-    /// Thresholds, number of contacts, pushing, sensors.
-    pub isolation: IsolatorOptions,
-    /// A signal stays on for this time after it was last over its threshold [s].
-    pub hold_time: f64,
-    /// Time constant of the bias that is tracked while nothing touches [s]; none for no tracking.
-    pub bias_time_constant: Option<f64>,
-    /// With bias tracking: a torque that stands still for this long is no contact, whatever its size [s]; none: a
-    /// contact may last for ever.
-    pub bias_settle_time: Option<f64>,
-}
-
-impl MonitorOptions {
-    /// The defaults, for calls every `dt` [s].
-    pub fn new(dt: f64) -> Self {
-        Self {
-            dt,
-            observer_gain: vec![50.0],
-            wrench_gain: None,
-            isolation: IsolatorOptions {
-                torque_threshold: vec![0.5],
-                wrench_threshold: vec![2.0],
-                ..IsolatorOptions::default()
-            },
-            hold_time: 0.02,
-            bias_time_constant: None,
-            bias_settle_time: None,
-        }
-    }
-}
-
-/// What the monitor says of one tick.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct ContactReport {
-    /// Since the first call [s].
-    pub time: f64,
-    /// Whether there is a contact.
-    pub collision: bool,
-    /// Whether it began with this tick.
-    pub onset: bool,
-    /// Region that detection alone gives: indices into [`Robot::links`].
-    pub links: Vec<usize>,
-    /// Bias-free external torque of all contacts `(nv,)`.
-    pub external_torque: Vec<f64>,
-    /// The same without wanted contacts (Vorndamme 2017, eq. 20), zero where joints are left out `(nv,)`.
-    pub collision_torque: Vec<f64>,
-    /// External wrench that each sensor sees, world axes, at its origin; NaN where one is left out [N, Nm].
-    pub wrenches: Vec<Vector6<f64>>,
-    /// Indices of the sensors without a reading.
-    pub sensors_left_out: Vec<usize>,
-    /// Indices of the joints whose torques a wanted contact loads unmeasured: behind its sensor, and on the way there
-    /// from the base while the sensor gives no reading, and until the observer has forgotten that gap.
-    pub joints_left_out: Vec<usize>,
-    /// Estimated acceleration `(nv,)`.
-    pub acceleration: Vec<f64>,
-    /// The contacts.
-    pub isolation: Isolation,
-}
 
 /// The sense of touch of one robot, called once a control tick.
 #[derive(Debug, Clone)]
 pub struct ContactMonitor {
     robot: Arc<Robot>,
-    dt: f64,
+    clock: SampleClock,
     observer: MomentumObserver,
     bias: Option<BiasTracker>,
     release: ReleaseDetector,
     detector: Detector,
     isolator: ContactIsolator,
     sensing: Option<Sensing>,
-    ticks: u64,
+    remainder_learned: bool,
     external_torque: Vec<f64>,
     collision_torque: Vec<f64>,
 }
@@ -105,11 +38,6 @@ impl ContactMonitor {
     /// [`crate::Error::Input`] names the option.
     pub fn new(robot: Arc<Robot>, options: &MonitorOptions) -> Result<Self> {
         let nv = robot.nv();
-        if let Some(time) = options.bias_settle_time.filter(|time| !(time.is_finite() && *time > 0.0)) {
-            return Err(Error::Input(format!(
-                "bias_settle_time: must be positive and finite [s], or none, not {time}"
-            )));
-        }
         let observer =
             MomentumObserver::new(robot.clone(), options.dt, &options.observer_gain).map_err(|error| {
                 match error {
@@ -121,7 +49,7 @@ impl ContactMonitor {
             })?;
         let tree = SensorTree::new(&robot, &options.isolation.sensors)?;
         let threshold = &options.isolation.torque_threshold;
-        let detector = Detector::with_sensors(
+        let detector = Detector::new(
             robot.clone(),
             threshold,
             &tree,
@@ -136,15 +64,18 @@ impl ContactMonitor {
             options.wrench_gain,
             options.dt,
         )?;
+        let greatest_bias = options.greatest_bias(detector.threshold())?;
+        let release = ReleaseDetector::new(options.release_rule(&robot, detector.threshold())?);
+        let tracker = |constant| BiasTracker::new(constant, greatest_bias);
         Ok(Self {
+            clock: SampleClock::new(options.dt),
             observer,
             detector,
+            release,
             sensing: (!options.isolation.sensors.is_empty()).then_some(sensing),
-            bias: options.bias_time_constant.map(|constant| BiasTracker::new(nv, constant)).transpose()?,
-            release: ReleaseDetector::new(nv, options.bias_settle_time),
+            bias: options.bias_time_constant.map(tracker).transpose()?,
             isolator: ContactIsolator::new(robot.clone(), &options.isolation)?,
-            dt: options.dt,
-            ticks: 0,
+            remainder_learned: false,
             external_torque: vec![0.0; nv],
             collision_torque: vec![0.0; nv],
             robot,
@@ -154,8 +85,12 @@ impl ContactMonitor {
     /// One control tick. `tau` and `friction` are `(nv,)`, or `(nv - 6,)` for a floating base; `wrenches` the sensors'
     /// readings, a NaN where one has none. Without sensors there are none.
     ///
+    /// `dt` [s] is the time since the last sample that was accepted, where it is measured. Without it, that is the options'
+    /// `dt`, and as much again for every sample refused in between. Over more than 50 ms, or five times the options' `dt`
+    /// if that is longer, nothing is known of the mean torque: the external torque is then kept as it was.
+    ///
     /// # Errors
-    /// [`crate::Error::Input`] names the argument; the state is then unchanged.
+    /// [`crate::Error::Input`] names the argument; the state is then unchanged but for the time that passed.
     pub fn update(
         &mut self,
         q: &[f64],
@@ -163,21 +98,27 @@ impl ContactMonitor {
         tau: &[f64],
         friction: Option<&[f64]>,
         wrenches: Option<&[[f64; 6]]>,
+        dt: Option<f64>,
     ) -> Result<()> {
-        self.check_wrenches(wrenches)?;
-        let first = self.ticks == 0;
-        self.external_torque.copy_from_slice(self.observer.update(q, v, tau, friction, None)?);
-        self.ticks += 1;
+        let first = !self.clock.started();
+        let step = match self.observe(q, v, tau, friction, wrenches, dt) {
+            Ok(step) => step,
+            Err(error) => {
+                self.miss(dt);
+                return Err(error);
+            }
+        };
+        let length = step.length(self.clock.dt());
         self.collision_torque.copy_from_slice(&self.external_torque);
         if let (Some(sensing), Some(readings)) = (&mut self.sensing, wrenches) {
-            sensing.update(&self.observer, readings, self.dt);
+            sensing.update(&self.observer, readings, self.detector.threshold(), step, self.clock.dt());
             let wanted = sensing.wanted_torque();
             self.collision_torque.iter_mut().zip(wanted).for_each(|(torque, wanted)| *torque -= wanted);
         }
-        let ready = self.remove_bias(first);
+        let ready = self.remove_bias(length, !first && !step.is_gap());
         if ready {
             let unwanted = self.sensing.as_ref().map_or(&[][..], Sensing::unwanted);
-            self.detector.update_sensed(&self.collision_torque, unwanted, self.dt);
+            self.detector.update(&self.collision_torque, unwanted, length);
         }
         if self.detector.collision() {
             self.isolate();
@@ -185,6 +126,32 @@ impl ContactMonitor {
             self.isolator.clear();
         }
         Ok(())
+    }
+
+    /// A tick whose sample never came to [`ContactMonitor::update`], `dt` [s] after the last that was accepted if that is
+    /// measured: as if it had been refused.
+    pub fn miss(&mut self, dt: Option<f64>) {
+        self.clock.miss(dt);
+    }
+
+    /// Checks the arguments, and takes the sample in.
+    fn observe(
+        &mut self,
+        q: &[f64],
+        v: &[f64],
+        tau: &[f64],
+        friction: Option<&[f64]>,
+        wrenches: Option<&[[f64; 6]]>,
+        dt: Option<f64>,
+    ) -> Result<Step> {
+        self.check_wrenches(wrenches)?;
+        if let Some(dt) = dt {
+            check_time_step(dt)?;
+        }
+        let step = self.clock.step(dt);
+        self.external_torque.copy_from_slice(self.observer.advance(q, v, tau, friction, step)?);
+        self.clock.accept(dt);
+        Ok(step)
     }
 
     /// The contacts behind the torque and the wrenches.
@@ -212,9 +179,11 @@ impl ContactMonitor {
         }
     }
 
-    /// Subtracts the bias, which follows the collision torque while nothing touches. False during its first average.
-    fn remove_bias(&mut self, first: bool) -> bool {
-        let Self { bias, sensing, detector, release, collision_torque, external_torque, dt, .. } = self;
+    /// Subtracts the bias, which follows the collision torque while nothing touches, over a step of `length` [s]; not where
+    /// that torque is `new` neither by the first sample nor by one after a gap. False during the bias's first estimate.
+    fn remove_bias(&mut self, length: f64, new: bool) -> bool {
+        let Self { bias, sensing, detector, release, collision_torque, external_torque, .. } = self;
+        self.remainder_learned = false;
         let Some(bias) = bias else {
             leave_out(sensing, collision_torque, None);
             return true;
@@ -232,18 +201,21 @@ impl ContactMonitor {
             && (detector.collision()
                 || felt
                 || collision_torque.iter().zip(bias.bias()).zip(threshold).any(over));
-        if touched {
+        if touched && !new {
+            release.interrupt();
+        } else if touched {
+            let over = release.update(collision_torque, bias.bias(), length);
             // A sensor that feels a contact knows better than a torque that stands still.
-            if release.update(collision_torque, bias.bias(), threshold, *dt) && !felt {
+            if over && !felt && bias.allows(release.remainder()) {
                 bias.set(release.remainder());
                 release.reset();
                 detector.reset();
+                self.remainder_learned = true;
             }
         } else {
             release.reset();
-            // The first call has no torque yet.
-            if !first {
-                bias.follow(collision_torque, *dt);
+            if new {
+                bias.follow(collision_torque, length);
             }
         }
         for torque in [collision_torque, external_torque] {
@@ -264,6 +236,7 @@ impl ContactMonitor {
         report.time = self.time();
         report.collision = self.detector.collision();
         report.onset = self.detector.onset();
+        report.remainder_learned = self.remainder_learned;
         report.links.clear();
         report.links.extend_from_slice(self.detector.links());
         report.external_torque.clone_from(&self.external_torque);
@@ -293,16 +266,27 @@ impl ContactMonitor {
         if let Some(sensing) = &mut self.sensing {
             sensing.reset();
         }
-        self.ticks = 0;
+        self.clock.reset();
+        self.remainder_learned = false;
         self.release.reset();
         if let Some(bias) = &mut self.bias {
             bias.reset();
         }
     }
 
-    /// Since the first call [s].
+    /// Since the first accepted call [s].
     pub fn time(&self) -> f64 {
-        self.ticks.saturating_sub(1) as f64 * self.dt
+        self.clock.time()
+    }
+
+    /// Time between two calls that is assumed where none is given [s].
+    pub fn dt(&self) -> f64 {
+        self.clock.dt()
+    }
+
+    /// The bias that is subtracted `(nv,)`; none without tracking.
+    pub fn bias(&self) -> Option<&[f64]> {
+        self.bias.as_ref().map(BiasTracker::bias)
     }
 
     /// The sensors' names.

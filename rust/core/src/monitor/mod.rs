@@ -1,10 +1,13 @@
 //! The pipeline: one call a control tick.
 
 mod bias;
+mod clock;
 mod contact_monitor;
+mod options;
 mod release;
+mod report;
 mod sensing;
 
-pub use bias::BiasTracker;
-pub use contact_monitor::{ContactMonitor, ContactReport, MonitorOptions};
-pub use release::ReleaseDetector;
+pub use contact_monitor::ContactMonitor;
+pub use options::MonitorOptions;
+pub use report::ContactReport;

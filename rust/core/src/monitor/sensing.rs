@@ -5,14 +5,17 @@ use std::sync::Arc;
 use nalgebra::{Vector3, Vector6};
 
 use crate::error::Result;
-use crate::observer::MomentumObserver;
+use crate::observer::{MomentumObserver, Step};
 use crate::robot::motion::{split, stack};
 use crate::robot::{Kinematics, Robot};
 use crate::sensor::{check_readings, is_known, SensorTree, WrenchObserver};
 
 /// A wanted sensor that comes back is trusted after so many time constants of the observer, which by then has
-/// forgotten what the sensor missed.
+/// forgotten what the sensor missed of a force that came and went.
 const SETTLING: f64 = 5.0;
+/// And once what the observer does not know yet of a force that came and stayed is below this share of every joint's
+/// threshold: of the weight of a humanoid on its feet, e^-5 is still over it.
+const UNOBSERVED: f64 = 0.1;
 
 /// The sensors of a monitor.
 #[derive(Debug, Clone)]
@@ -24,6 +27,8 @@ pub(super) struct Sensing {
     /// How long a wanted sensor stays untrusted after a gap [s].
     settling_time: f64,
     unsettled: Vec<f64>,
+    /// Whether a sensor has been read for long enough to be trusted in full; of those that are not wanted it is not asked.
+    settled: Vec<bool>,
     wanted_torque: Vec<f64>,
     /// Velocity variables that wanted contacts alone load: behind wanted sensors, and at the same joint.
     behind_wanted: Vec<bool>,
@@ -55,6 +60,7 @@ impl Sensing {
             wrenches: WrenchObserver::new(robot.clone(), &tree, gain, wrench_gain, dt)?,
             settling_time: SETTLING / slowest,
             unsettled: vec![0.0; tree.len()],
+            settled: vec![true; tree.len()],
             wanted_torque: vec![0.0; gain.len()],
             blind: behind_wanted.clone(),
             behind_wanted,
@@ -65,15 +71,25 @@ impl Sensing {
         })
     }
 
-    /// A tick of `dt`, after the observer's, with checked readings.
-    pub fn update(&mut self, observer: &MomentumObserver, readings: &[[f64; 6]], dt: f64) {
-        self.wrenches.update(observer.kinematics(), &self.tree, readings);
+    /// A step of nominally `dt` [s], after the observer's, with checked readings and the joints' thresholds `(nv,)`.
+    pub fn update(
+        &mut self,
+        observer: &MomentumObserver,
+        readings: &[[f64; 6]],
+        threshold: &[f64],
+        step: Step,
+        dt: f64,
+    ) {
+        self.wrenches.update(observer.kinematics(), &self.tree, readings, step);
         self.tree.set_active(self.wrenches.usable());
-        self.find_blind(observer.robot(), dt);
+        self.find_blind(observer.robot(), threshold, step.length(dt));
         self.exclude(observer.kinematics());
         for (sensor, trusted) in self.trusted.iter_mut().enumerate() {
-            let settled = self.unsettled[sensor] <= 0.0;
-            *trusted = if settled { self.wrenches.external()[sensor] } else { Vector6::repeat(f64::NAN) };
+            *trusted = if self.settled[sensor] {
+                self.wrenches.external()[sensor]
+            } else {
+                Vector6::repeat(f64::NAN)
+            };
         }
     }
 
@@ -122,6 +138,7 @@ impl Sensing {
         self.wrenches.reset();
         self.tree.set_active(self.wrenches.usable());
         self.unsettled.fill(0.0);
+        self.settled.fill(true);
         self.wanted_torque.fill(0.0);
         self.blind.copy_from_slice(&self.behind_wanted);
         self.unwanted.fill(Vector6::zeros());
@@ -130,7 +147,7 @@ impl Sensing {
 
     /// Joints that a wanted contact may load unmeasured: on the chain of a wanted sensor without a settled reading,
     /// and behind a wanted sensor.
-    fn find_blind(&mut self, robot: &Robot, dt: f64) {
+    fn find_blind(&mut self, robot: &Robot, threshold: &[f64], dt: f64) {
         self.blind.copy_from_slice(&self.behind_wanted);
         for sensor in 0..self.tree.len() {
             if !self.wanted[sensor] {
@@ -138,7 +155,10 @@ impl Sensing {
             }
             let unsettled = &mut self.unsettled[sensor];
             *unsettled = if self.tree.is_active(sensor) { *unsettled - dt } else { self.settling_time };
-            if *unsettled > 0.0 {
+            let mut unobserved = self.wrenches.unobserved_torque(sensor).iter().zip(threshold);
+            self.settled[sensor] =
+                *unsettled <= 0.0 && unobserved.all(|(torque, threshold)| *torque <= UNOBSERVED * threshold);
+            if !self.settled[sensor] {
                 for &body in robot.chain(self.tree.body(sensor)) {
                     self.blind[robot.velocity_range(body)].fill(true);
                 }
@@ -156,7 +176,7 @@ impl Sensing {
             if !self.wanted[sensor] {
                 continue;
             }
-            let trusted = self.unsettled[sensor] <= 0.0;
+            let trusted = self.settled[sensor];
             let wrench = self.wrenches.external()[sensor];
             let outermost = (0..self.tree.len()).all(|other| {
                 other == sensor

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::step::{check_time_step, Step};
 use crate::error::{Error, Result};
 use crate::robot::configuration::{check_vector, spread_torque};
 use crate::robot::{ForwardDynamics, Kinematics, MomentumPass, Robot};
@@ -89,14 +90,26 @@ impl MomentumObserver {
         friction: Option<&[f64]>,
         dt: Option<f64>,
     ) -> Result<&[f64]> {
+        if let Some(dt) = dt {
+            check_time_step(dt)?;
+        }
+        self.advance(q, v, tau, friction, dt.map_or(Step::Nominal, Step::Of))
+    }
+
+    /// The same over a checked step; over a gap the estimate is kept, and the next step starts from here.
+    pub(crate) fn advance(
+        &mut self,
+        q: &[f64],
+        v: &[f64],
+        tau: &[f64],
+        friction: Option<&[f64]>,
+        step: Step,
+    ) -> Result<&[f64]> {
         self.robot.check_configuration(q)?;
         self.robot.check_tangent("v", v)?;
         self.robot.check_torque("tau", tau)?;
         if let Some(friction) = friction {
             self.robot.check_torque("friction", friction)?;
-        }
-        if let Some(dt) = dt {
-            check_time_step(dt)?;
         }
         std::mem::swap(&mut self.momentum, &mut self.momentum_before);
         std::mem::swap(&mut self.known_rate, &mut self.known_rate_before);
@@ -110,8 +123,8 @@ impl MomentumObserver {
             self.motor_torque[missing..].iter_mut().zip(friction).for_each(|(tau, f)| *tau -= f);
         }
         self.known_rate.iter_mut().zip(&self.motor_torque).for_each(|(rate, tau)| *rate += tau);
-        if self.started {
-            self.integrate(dt);
+        if self.started && !step.is_gap() {
+            self.integrate(step);
         }
         self.started = true;
         self.acceleration_is_current = false;
@@ -119,14 +132,15 @@ impl MomentumObserver {
     }
 
     /// `r' = gain (dp/dt - known rate - r)`, exactly over a step on which `dp/dt - known rate` is constant.
-    fn integrate(&mut self, dt: Option<f64>) {
-        let inverse = 1.0 / dt.unwrap_or(self.dt);
+    fn integrate(&mut self, step: Step) {
+        let length = step.length(self.dt);
+        let inverse = 1.0 / length;
         for j in 0..self.external_torque.len() {
             let rate = (self.momentum[j] - self.momentum_before[j]) * inverse;
             let unexplained = rate - 0.5 * (self.known_rate[j] + self.known_rate_before[j]);
-            let decay = match dt {
-                None => self.decay[j],
-                Some(dt) => (-self.gain[j] * dt).exp(),
+            let decay = match step {
+                Step::Nominal => self.decay[j],
+                _ => (-self.gain[j] * length).exp(),
             };
             self.external_torque[j] = unexplained + decay * (self.external_torque[j] - unexplained);
         }
@@ -171,17 +185,5 @@ impl MomentumObserver {
     /// The robot observed.
     pub fn robot(&self) -> &Arc<Robot> {
         &self.robot
-    }
-}
-
-/// Shortest and longest time step [s].
-const TIME_STEPS: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
-
-fn check_time_step(dt: f64) -> Result<()> {
-    if TIME_STEPS.contains(&dt) {
-        Ok(())
-    } else {
-        let (from, to) = (TIME_STEPS.start(), TIME_STEPS.end());
-        Err(Error::Input(format!("dt: must lie between {from:e} and {to:e} s, not {dt}")))
     }
 }

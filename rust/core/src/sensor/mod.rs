@@ -12,5 +12,4 @@ pub use force_torque_sensor::{Convention, ForceTorqueSensor};
 pub(crate) use load_compensator::check_readings;
 pub use load_compensator::LoadCompensator;
 pub use sensor_tree::{SensorTree, JOINT_TORQUES};
-pub(crate) use wrench_observer::is_known;
-pub use wrench_observer::WrenchObserver;
+pub(crate) use wrench_observer::{is_known, WrenchObserver};

@@ -16,6 +16,7 @@ use super::distal_parts::{distal_parts, DistalPart};
 use super::exclusion::sensor_torque;
 use super::sensor_tree::SensorTree;
 use crate::error::{Error, Result};
+use crate::observer::Step;
 use crate::robot::motion::{split, stack};
 use crate::robot::{Kinematics, Robot};
 
@@ -25,16 +26,21 @@ const FAST: f64 = 0.5;
 /// Momentum or wrench, about a point that rests in the world.
 type Spatial = Vector6<f64>;
 
-/// Observes the external wrenches of a robot's sensors at equal time steps.
+/// Observes the external wrenches of a robot's sensors.
 #[derive(Debug, Clone)]
-pub struct WrenchObserver {
+pub(crate) struct WrenchObserver {
     robot: Arc<Robot>,
     parts: Vec<DistalPart>,
     dt: f64,
-    /// `exp(-gain dt)` per velocity variable.
+    /// The momentum observer's, per velocity variable [1/s].
+    gain: Vec<f64>,
+    /// Of the wrenches' low-pass [1/s].
+    wrench_gain: f64,
+    /// `exp(-gain length)` for the `length` of the last step, which is `decay_step` [s].
     decay: Vec<f64>,
     /// The same of the wrenches; zero without a low-pass.
     wrench_decay: f64,
+    decay_step: f64,
     /// The fixed point: where the first step's reference origin was, in the world.
     reference: Option<Vector3<f64>>,
     before: Kinematics,
@@ -46,6 +52,9 @@ pub struct WrenchObserver {
     had_reading: Vec<bool>,
     external: Vec<Vector6<f64>>,
     lagged: Vec<Vec<f64>>,
+    /// Of what came during a sensor's last gap, how much the momentum observer may not know by now, per sensor `(nv,)`.
+    unobserved: Vec<Vec<f64>>,
+    before_gap: Vec<f64>,
     torque: Vec<f64>,
     usable: Vec<bool>,
 }
@@ -71,11 +80,14 @@ impl WrenchObserver {
             return Err(Error::Input(format!("wrench_gain: must be positive [1/s], not {wrench_gain}")));
         }
         let zeros = vec![Spatial::zeros(); tree.len()];
-        let decay: Vec<f64> = gain.iter().map(|gain| (-gain * dt).exp()).collect();
         Ok(Self {
             parts: distal_parts(&robot, tree),
             dt,
+            gain: gain.to_vec(),
+            wrench_gain,
+            decay: gain.iter().map(|gain| (-gain * dt).exp()).collect(),
             wrench_decay: (-wrench_gain * dt).exp(),
+            decay_step: dt,
             reference: None,
             before: Kinematics::new(&robot),
             momentum: zeros.clone(),
@@ -85,9 +97,10 @@ impl WrenchObserver {
             had_reading: vec![false; tree.len()],
             external: zeros,
             lagged: vec![vec![0.0; gain.len()]; tree.len()],
+            unobserved: vec![vec![0.0; gain.len()]; tree.len()],
+            before_gap: vec![0.0; gain.len()],
             torque: vec![0.0; gain.len()],
             usable: vec![true; tree.len()],
-            decay,
             robot,
         })
     }
@@ -95,7 +108,9 @@ impl WrenchObserver {
     /// One control tick, with poses and velocities of now and checked readings; one with a NaN leaves its sensor out.
     ///
     /// The first call sets the initial momentum and gives zeros. A sensor that comes back is left out for one more tick.
-    pub fn update(&mut self, kinematics: &Kinematics, tree: &SensorTree, readings: &[[f64; 6]]) {
+    /// Over a gap the estimates are kept, as the momentum observer keeps its own.
+    pub fn update(&mut self, kinematics: &Kinematics, tree: &SensorTree, readings: &[[f64; 6]], step: Step) {
+        self.set_step(step.length(self.dt));
         let first = self.reference.is_none();
         let shift = kinematics.origin - *self.reference.get_or_insert(kinematics.origin);
         std::mem::swap(&mut self.momentum, &mut self.momentum_before);
@@ -103,19 +118,31 @@ impl WrenchObserver {
         self.pass(kinematics, tree, &shift);
         for (sensor, reading) in readings.iter().enumerate() {
             let has_reading = !reading.iter().any(|x| x.is_nan());
-            self.usable[sensor] = has_reading && (first || self.had_reading[sensor]);
+            let known_before =
+                self.had_reading[sensor] && (!step.is_gap() || is_known(&self.external[sensor]));
+            self.usable[sensor] = has_reading && (first || known_before);
             if has_reading {
                 self.known_rate[sensor] -= load(kinematics, tree, sensor, reading, &shift);
             }
             if !self.usable[sensor] {
                 self.external[sensor] = Vector6::repeat(f64::NAN);
-            } else if !first {
+            } else if !first && !step.is_gap() {
                 self.observe(kinematics, tree, sensor);
             }
             self.had_reading[sensor] = has_reading;
         }
         self.before.origin = kinematics.origin;
         self.before.bodies.copy_from_slice(&kinematics.bodies);
+    }
+
+    /// Decays for a step of `length` [s], kept for the next of the same length.
+    fn set_step(&mut self, length: f64) {
+        if length.to_bits() == self.decay_step.to_bits() {
+            return;
+        }
+        self.decay_step = length;
+        self.wrench_decay = (-self.wrench_gain * length).exp();
+        self.decay.iter_mut().zip(&self.gain).for_each(|(decay, gain)| *decay = (-gain * length).exp());
     }
 
     /// Momentum behind each sensor and gravity's wrench on it, summed from sensor to sensor (Algorithm 1).
@@ -152,7 +179,7 @@ impl WrenchObserver {
             stack(&force, &(moment - arm.cross(&force)))
         };
         let known = (self.known_rate[sensor] + self.known_rate_before[sensor]) * 0.5;
-        let rate = (self.momentum[sensor] - self.momentum_before[sensor]) / self.dt;
+        let rate = (self.momentum[sensor] - self.momentum_before[sensor]) / self.decay_step;
         // After a gap the low-passes start anew.
         let fresh = !is_known(&self.external[sensor]);
         let mean = rate - known;
@@ -160,6 +187,10 @@ impl WrenchObserver {
         let external = &mut self.external[sensor];
         *external = if fresh { now } else { now + (*external - now) * self.wrench_decay };
         let lagged = &mut self.lagged[sensor];
+        let unobserved = &mut self.unobserved[sensor];
+        if fresh {
+            self.before_gap.copy_from_slice(lagged);
+        }
         sensor_torque(&self.robot, kinematics, tree, sensor, &now, &mut self.torque);
         for ((lagged, torque), decay) in lagged.iter_mut().zip(&self.torque).zip(&self.decay) {
             *lagged = if fresh { 0.5 * torque } else { decay * *lagged + (1.0 - decay) * 0.5 * torque };
@@ -167,6 +198,11 @@ impl WrenchObserver {
         sensor_torque(&self.robot, &self.before, tree, sensor, &about(&mean, &self.before), &mut self.torque);
         for ((lagged, torque), decay) in lagged.iter_mut().zip(&self.torque).zip(&self.decay) {
             *lagged += if fresh { 0.5 * torque } else { (1.0 - decay) * 0.5 * torque };
+        }
+        unobserved.iter_mut().zip(&self.decay).for_each(|(unobserved, decay)| *unobserved *= decay);
+        if fresh {
+            let change = lagged.iter().zip(&self.before_gap);
+            unobserved.iter_mut().zip(change).for_each(|(sum, (now, before))| *sum += (now - before).abs());
         }
     }
 
@@ -181,6 +217,12 @@ impl WrenchObserver {
         &self.lagged[sensor]
     }
 
+    /// Bounds how far [`WrenchObserver::lagged_torque`] is ahead of the momentum observer after a gap `(nv,)`, for a force
+    /// that changed once meanwhile, or has been there from the start.
+    pub fn unobserved_torque(&self, sensor: usize) -> &[f64] {
+        &self.unobserved[sensor]
+    }
+
     /// Which sensors are in use.
     pub fn usable(&self) -> &[bool] {
         &self.usable
@@ -192,6 +234,7 @@ impl WrenchObserver {
         self.had_reading.fill(false);
         self.external.fill(Vector6::zeros());
         self.lagged.iter_mut().for_each(|row| row.fill(0.0));
+        self.unobserved.iter_mut().for_each(|row| row.fill(0.0));
         self.usable.fill(true);
     }
 }

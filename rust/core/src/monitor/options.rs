@@ -1,0 +1,103 @@
+//! Settings of the monitor.
+
+use super::release::ReleaseRule;
+use crate::error::{Error, Result};
+use crate::isolation::IsolatorOptions;
+use crate::robot::configuration::check_vector;
+use crate::robot::{JointKind, Robot};
+
+/// Settings of a [`ContactMonitor`](super::ContactMonitor).
+#[derive(Debug, Clone)]
+pub struct MonitorOptions {
+    /// Time between two calls [s].
+    pub dt: f64,
+    /// Per velocity variable, or one for all [1/s].
+    pub observer_gain: Vec<f64>,
+    /// Of the low-pass on the sensors' external wrenches [1/s], infinite for no low-pass. If none, the
+    /// observer's smallest, and no low-pass where that is at least half the tick rate.
+    pub wrench_gain: Option<f64>,
+    /// Thresholds, number of contacts, pushing, sensors.
+    pub isolation: IsolatorOptions,
+    /// A signal stays on for this time after it was last over its threshold [s].
+    pub hold_time: f64,
+    /// Time constant of the bias that is tracked while nothing touches [s]; none for no tracking.
+    pub bias_time_constant: Option<f64>,
+    /// Greatest bias of each joint, in its thresholds; infinite for no limit. A model that is farther off must be mended.
+    pub bias_limit: f64,
+    /// With bias tracking: a torque that stands still for this long is no contact, whatever its size within `bias_limit`
+    /// [s]; none: a contact may last for ever.
+    pub bias_settle_time: Option<f64>,
+    /// With bias tracking: the share of its greatest torque in a contact that a joint's gear or sensor may keep after it.
+    /// Per velocity variable, or one for all.
+    pub hysteresis: Vec<f64>,
+}
+
+/// A bias of more thresholds than this is taken for a fault of the set-up: a wrong sign of `tau`, a missing tool. Real arms
+/// show up to twelve.
+const BIAS_LIMIT: f64 = 30.0;
+/// Gears and sensors keep some per cent of what loaded them; torques from motor currents up to 20 %.
+const HYSTERESIS: f64 = 0.2;
+
+impl MonitorOptions {
+    /// The defaults, for calls every `dt` [s].
+    pub fn new(dt: f64) -> Self {
+        Self {
+            dt,
+            observer_gain: vec![50.0],
+            wrench_gain: None,
+            isolation: IsolatorOptions {
+                torque_threshold: vec![0.5],
+                wrench_threshold: vec![2.0],
+                ..IsolatorOptions::default()
+            },
+            hold_time: 0.02,
+            bias_time_constant: None,
+            bias_limit: BIAS_LIMIT,
+            bias_settle_time: None,
+            hysteresis: vec![HYSTERESIS],
+        }
+    }
+
+    /// The rule for the end of a contact, with checked thresholds `(nv,)`.
+    pub(super) fn release_rule(&self, robot: &Robot, threshold: &[f64]) -> Result<ReleaseRule> {
+        if let Some(time) = self.bias_settle_time.filter(|time| !(time.is_finite() && *time > 0.0)) {
+            return Err(Error::Input(format!(
+                "bias_settle_time: must be positive and finite [s], or none, not {time}"
+            )));
+        }
+        let hysteresis = match self.hysteresis[..] {
+            [one] => vec![one; robot.nv()],
+            _ => self.hysteresis.clone(),
+        };
+        check_vector("hysteresis", &hysteresis, robot.nv())?;
+        if let Some(share) = hysteresis.iter().find(|share| !(0.0..1.0).contains(*share)) {
+            return Err(Error::Input(format!("hysteresis: must be a share from 0 to below 1, not {share}")));
+        }
+        Ok(ReleaseRule {
+            settle_time: self.bias_settle_time,
+            hysteresis,
+            threshold: threshold.to_vec(),
+            is_force: robot.joint_kinds().flat_map(forces_of).copied().collect(),
+        })
+    }
+
+    /// Greatest bias of each joint [Nm, N], with checked thresholds `(nv,)`.
+    pub(super) fn greatest_bias(&self, threshold: &[f64]) -> Result<Vec<f64>> {
+        if self.bias_limit.is_nan() || self.bias_limit <= 0.0 {
+            return Err(Error::Input(format!(
+                "bias_limit: must be positive, in thresholds, not {}",
+                self.bias_limit
+            )));
+        }
+        Ok(threshold.iter().map(|threshold| self.bias_limit * threshold).collect())
+    }
+}
+
+/// Which of a joint's torques are forces.
+fn forces_of(kind: JointKind) -> &'static [bool] {
+    match kind {
+        JointKind::FreeFlyer => &[true, true, true, false, false, false],
+        JointKind::Prismatic => &[true],
+        JointKind::Revolute | JointKind::Continuous => &[false],
+    }
+}

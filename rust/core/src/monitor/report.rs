@@ -1,0 +1,37 @@
+//! What the monitor reports.
+
+use nalgebra::Vector6;
+
+use crate::isolation::Isolation;
+
+/// What the monitor says of one tick.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ContactReport {
+    /// Since the first accepted call [s].
+    pub time: f64,
+    /// Whether there is a contact.
+    pub collision: bool,
+    /// Whether it began with this tick.
+    pub onset: bool,
+    /// Whether a torque that stood still became the bias in this tick, which ended the contact: what hysteresis may have
+    /// left, what outlasted [`MonitorOptions::bias_settle_time`](super::MonitorOptions::bias_settle_time), or no torque at
+    /// all where the bias before was wrong.
+    pub remainder_learned: bool,
+    /// Region that detection alone gives: indices into [`Robot::links`](crate::robot::Robot::links).
+    pub links: Vec<usize>,
+    /// Bias-free external torque of all contacts `(nv,)`.
+    pub external_torque: Vec<f64>,
+    /// The same without wanted contacts (Vorndamme 2017, eq. 20), zero where joints are left out `(nv,)`.
+    pub collision_torque: Vec<f64>,
+    /// External wrench that each sensor sees, world axes, at its origin; NaN where one is left out [N, Nm].
+    pub wrenches: Vec<Vector6<f64>>,
+    /// Indices of the sensors without a reading.
+    pub sensors_left_out: Vec<usize>,
+    /// Indices of the joints whose torques a wanted contact loads unmeasured: behind its sensor, and on the way there
+    /// from the base while the sensor gives no reading, and until the observer has forgotten that gap.
+    pub joints_left_out: Vec<usize>,
+    /// Estimated acceleration `(nv,)`.
+    pub acceleration: Vec<f64>,
+    /// The contacts.
+    pub isolation: Isolation,
+}
