@@ -253,10 +253,10 @@ mod tests {
     fn a_gap_is_no_standstill() {
         let mut release = detector(None);
         release.update(&[10.0, 1.0], &[0.0; 2], DT);
-        assert!(!(0..4).any(|_| release.update(&[0.6, 0.0], &[0.0; 2], 0.2)));
+        assert!(!(0..4).any(|_| release.update(&[0.505, 0.0], &[0.0; 2], 0.2)));
         release.interrupt();
-        assert!(!(0..4).any(|_| release.update(&[0.6, 0.0], &[0.0; 2], 0.2)));
-        assert!(release.update(&[0.6, 0.0], &[0.0; 2], 0.2));
+        assert!(!(0..4).any(|_| release.update(&[0.505, 0.0], &[0.0; 2], 0.2)));
+        assert!(release.update(&[0.505, 0.0], &[0.0; 2], 0.2));
     }
 
     #[test]
