@@ -19,7 +19,7 @@ def arm() -> cs.Robot:
 
 
 class Motion:
-    """Fast free motion: sines of 0.5 to 1.1 Hz whose velocities peak at 1.9 rad/s, and what is measured on the way."""
+    """Fast free motion, sines of 0.5 to 1.1 Hz with velocities up to 1.9 rad/s, and its measurements."""
 
     def __init__(self, robot: cs.Robot, *, sensed: bool = False) -> None:
         self.robot = robot
@@ -124,7 +124,7 @@ def test_a_long_gap_raises_no_alarm_and_ends_no_contact(arm: cs.Robot) -> None:
         report = monitor.update(*motion.sample(0.499 + 0.7, tau_ext), dt=0.7)
         assert (report.collision, report.onset) == (touched, False)
         np.testing.assert_allclose(report.external_torque, before.external_torque, atol=1e-12)
-        for tick in range(300):
+        for _ in range(300):
             with pytest.raises(cs.InputError, match="tau"):
                 monitor.update(*motion.sample(0.0)[:2], np.full(7, np.nan))
         for tick in range(200):
