@@ -17,10 +17,14 @@ __all__ = [
     "ContactMonitor",
     "ContactParticleFilter",
     "ContactReport",
+    "ContactSenseError",
     "ForceTorqueSensor",
+    "GeometryError",
+    "InputError",
     "Isolation",
     "LoadCompensator",
     "Mode",
+    "ModelError",
     "MomentumObserver",
     "Particles",
     "RayHits",
@@ -34,6 +38,11 @@ __all__ = [
 
 __version__: Final[str]
 build_profile: Final[Literal["debug", "release"]]
+
+class ContactSenseError(Exception): ...
+class ModelError(ContactSenseError): ...
+class GeometryError(ContactSenseError): ...
+class InputError(ContactSenseError, ValueError): ...
 
 def _robot_from_urdf(
     path: str | PathLike[str],
@@ -184,7 +193,7 @@ class ContactIsolator:
         wanted_contacts: Iterable[str] | None = None,
         max_contacts: int | None = None,
         pushing: bool = True,
-        locate_within: float = 0.05,
+        locate_within: float | None = None,
     ) -> Self: ...
     def isolate(self, q: ArrayLike, tau_ext: ArrayLike, wrenches: ArrayLike | None = None) -> Isolation: ...
 
@@ -257,7 +266,7 @@ class ContactMonitor:
         hold_time: float | None = None,
         max_contacts: int | None = None,
         pushing: bool = True,
-        locate_within: float = 0.05,
+        locate_within: float | None = None,
     ) -> Self: ...
     def update(
         self,

@@ -38,7 +38,7 @@ def describe_pinocchio(model: Any, geometry_model: Any) -> RobotDescription:
     check_finite(joints, links)
     check_bodies(joints, links)
     warnings += check_inertias("joint", ((joint.name, joint.mass, joint.inertia) for joint in joints))
-    warnings += check_mass_matrix(model)
+    warnings += check_mass_matrix(joints)
     if not any(link.geometry for link in links):
         warnings.append("geometry_model has no shapes, so the robot has no surface to be touched")
     return RobotDescription(str(model.name), joints, links, gravity, warnings)

@@ -46,7 +46,9 @@ def describe_urdf(
 
     Raises `ModelError`, `GeometryError` for the description, `InputError` for the arguments.
     """
-    if geometry not in ("collision", "visual"):
+    if not isinstance(floating_base, bool | np.bool_):
+        raise InputError(f"floating_base must be True or False, not {floating_base!r}")
+    if not isinstance(geometry, str) or geometry not in ("collision", "visual"):
         raise InputError(f"geometry must be 'collision' or 'visual', not {geometry!r}")
     acceleration = _gravity(gravity)
     try:
@@ -76,7 +78,7 @@ def describe_urdf(
         )
     check_finite(joints, links)
     check_bodies(joints, links)
-    warnings += lock_warnings + check_mass_matrix(model) + _no_surface(links, geometry)
+    warnings += lock_warnings + check_mass_matrix(joints) + _no_surface(links, geometry)
     return RobotDescription(tree.name, joints, links, acceleration, warnings)
 
 

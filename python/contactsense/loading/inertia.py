@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
-import pinocchio as pin
 
+from .. import _core
 from ..errors import ModelError
 from .description import FloatArray, JointTuple, LinkTuple, name_list
 
@@ -58,33 +58,57 @@ def check_bodies(joints: Iterable[JointTuple], links: Iterable[LinkTuple]) -> No
             raise ModelError(f"{owner}: inertia has the negative principal moment {moments[0]:g} kg m^2")
 
 
-def check_mass_matrix(model: Any) -> list[str]:
+def check_mass_matrix(joints: list[JointTuple]) -> list[str]:
     """A warning that names the joints along which the mass matrix is singular whatever the configuration.
 
     Kinematics, isolation and inverse dynamics stay valid for such a robot; forward dynamics does not.
     `ModelError` where the mass matrix has a negative eigenvalue.
     """
-    if model.nv == 0:
+    if not joints:
         return []
-    data = model.createData()
+    # The core's: `pinocchio.Data` takes memory with the cube of the joints, 4 GB for 400.
+    robot = _core.Robot("", joints, [], np.zeros(3), [])
     generator = np.random.default_rng(0)
-    idle = np.ones(model.nv, dtype=bool)
+    idle = np.ones(robot.nv, dtype=bool)
     for step in (0.0, 1.0, 1.0):
-        q = pin.integrate(model, pin.neutral(model), step * generator.uniform(-1.0, 1.0, model.nv))
-        matrix = np.triu(pin.crba(model, data, q))
-        matrix = matrix + np.triu(matrix, 1).T
+        matrix = robot.mass_matrix(_configuration(joints, step * generator.uniform(-1.0, 1.0, robot.nv)))
         if not np.isfinite(matrix).all():
             raise ModelError(
                 "the mass matrix is not finite; check the magnitudes of placements, masses and inertias"
             )
         idle &= _null_coordinates(matrix)
-    names = [model.names[i] for i in range(1, model.njoints) if idle[_coordinates(model, i)].any()]
+    names, start = [], 0
+    for joint in joints:
+        end = start + _velocities(joint)
+        if idle[start:end].any():
+            names.append(joint.name)
+        start = end
     if not names:
         return []
     return [
         "No mass or inertia moves with these joints, so the mass matrix is singular "
         f"and the acceleration of forward dynamics is not to be relied on: {name_list(names)}"
     ]
+
+
+def _velocities(joint: JointTuple) -> int:
+    return 6 if joint.kind == "free_flyer" else 1
+
+
+def _configuration(joints: list[JointTuple], positions: FloatArray) -> list[float]:
+    """Joint positions as `q`; the base stays where it is, as its pose does not change the mass matrix."""
+    q: list[float] = []
+    start = 0
+    for joint in joints:
+        position = float(positions[start])
+        start += _velocities(joint)
+        if joint.kind == "free_flyer":
+            q += [0.0] * 6 + [1.0]
+        elif joint.kind == "continuous":
+            q += [math.cos(position), math.sin(position)]
+        else:
+            q.append(position)
+    return q
 
 
 def _null_coordinates(matrix: FloatArray) -> np.ndarray:
@@ -101,8 +125,3 @@ def _null_coordinates(matrix: FloatArray) -> np.ndarray:
         raise ModelError(_INDEFINITE)
     in_null_space = (np.abs(vectors[:, values < _RANK]) > 1e-3).any(axis=1)
     return np.asarray(massless | in_null_space)
-
-
-def _coordinates(model: Any, joint: int) -> slice:
-    start = model.joints[joint].idx_v
-    return slice(start, start + model.joints[joint].nv)

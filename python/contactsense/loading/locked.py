@@ -12,6 +12,10 @@ from ..errors import InputError
 from .description import name_list
 from .urdf_tree import UrdfJoint, UrdfTree
 
+# `buildReducedModel` makes a `pinocchio.Data`, whose memory grows with the cube of the joints: half a GB
+# for 200.
+_MOST_JOINTS = 200
+
 LockedJoints: TypeAlias = Mapping[str, SupportsFloat] | Iterable[str] | None
 
 
@@ -23,6 +27,11 @@ def lock_joints(model: Any, tree: UrdfTree, locked: LockedJoints) -> tuple[Any, 
     positions = _positions(locked, tree)
     if not positions:
         return model, []
+    if model.njoints - 1 > _MOST_JOINTS:
+        raise InputError(
+            f"locked_joints: joints can be locked in robots of up to {_MOST_JOINTS} moving joints, not "
+            f"{model.njoints - 1}; make them fixed joints in the URDF"
+        )
     q = pin.neutral(model)
     outside = []
     for name, position in positions.items():

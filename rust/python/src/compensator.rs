@@ -1,9 +1,12 @@
 //! `LoadCompensator`.
 
+use std::sync::Mutex;
+
 use contactsense::sensor::LoadCompensator;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 
+use crate::arguments::{robot, sole};
 use crate::arrays::{from_rows, Readings, Vector};
 use crate::errors::to_python;
 use crate::robot::PyRobot;
@@ -13,15 +16,18 @@ use crate::sensor::sensors;
 ///
 /// One pass for all sensors, also for several in a chain and at fixed joints. `sensors`: of `ForceTorqueSensor`, names and
 /// links unique. Raises `InputError` that names what is wrong.
-#[pyclass(name = "LoadCompensator", module = "contactsense._core")]
-pub struct PyLoadCompensator(LoadCompensator);
+#[pyclass(frozen, name = "LoadCompensator", module = "contactsense._core")]
+pub struct PyLoadCompensator(Mutex<LoadCompensator>);
 
 #[pymethods]
 impl PyLoadCompensator {
     #[new]
-    fn new(robot: &Bound<'_, PyRobot>, sensors: &Bound<'_, PyAny>) -> PyResult<Self> {
+    fn new(
+        #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
+        sensors: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
         let compensator = LoadCompensator::new(robot.get().0.clone(), &self::sensors(sensors)?);
-        Ok(Self(compensator.map_err(|error| to_python(robot.py(), error))?))
+        Ok(Self(Mutex::new(compensator.map_err(|error| to_python(robot.py(), error))?)))
     }
 
     /// The external wrench that each sensor sees, `(n_sensors, 6)` [N, Nm]: on the robot, world axes, at the sensor's origin.
@@ -29,7 +35,7 @@ impl PyLoadCompensator {
     /// `q` `(nq,)`, `v` and `a` `(nv,)`, `wrenches` `(n_sensors, 6)`: the readings, sensor axes. A reading with a NaN
     /// leaves its sensor out: its row is NaN, the others hold. Raises `InputError` that names the argument.
     fn update<'py>(
-        &mut self,
+        &self,
         q: &Bound<'py, PyAny>,
         v: &Bound<'py, PyAny>,
         a: &Bound<'py, PyAny>,
@@ -38,7 +44,8 @@ impl PyLoadCompensator {
         let py = q.py();
         let (q, v, a) = (Vector::new("q", q)?, Vector::new("v", v)?, Vector::new("a", a)?);
         let wrenches = Readings::new(wrenches)?;
-        match self.0.update(q.slice(), v.slice(), a.slice(), wrenches.rows()) {
+        let mut compensator = sole(py, "LoadCompensator", &self.0)?;
+        match compensator.update(q.slice(), v.slice(), a.slice(), wrenches.rows()) {
             Ok(external) => from_rows(py, external.iter().map(|wrench| (*wrench).into())),
             Err(error) => Err(to_python(py, error)),
         }

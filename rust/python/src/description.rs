@@ -1,5 +1,7 @@
 //! The loaders' plain tuples as the core's description.
 
+use std::path::PathBuf;
+
 use contactsense::robot::{JointDescription, JointKind, LinkDescription, RobotDescription};
 use contactsense::spatial::Pose;
 use contactsense::surface::{load_mesh, Geometry, Part};
@@ -11,6 +13,33 @@ use pyo3::types::PyTuple;
 
 use crate::arrays::{rows, Vector};
 use crate::errors::{input, to_python};
+
+struct MeshFile {
+    path: PathBuf,
+    scale: [f64; 3],
+}
+
+/// A description whose mesh files are not read yet.
+pub struct Draft {
+    description: RobotDescription,
+    /// Of each part of each link.
+    files: Vec<Vec<Option<MeshFile>>>,
+}
+
+impl Draft {
+    /// Reads the mesh files; needs no Python.
+    pub fn load(mut self) -> contactsense::Result<RobotDescription> {
+        for (link, files) in self.description.links.iter_mut().zip(self.files) {
+            for (part, file) in link.geometry.iter_mut().zip(files) {
+                let Some(MeshFile { path, scale }) = file else { continue };
+                let (vertices, triangles) = load_mesh(&path, scale)
+                    .map_err(|error| Error::Geometry(format!("link '{}': {error}", link.name)))?;
+                part.geometry = Geometry::Mesh { vertices, triangles };
+            }
+        }
+        Ok(self.description)
+    }
+}
 
 fn vector(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vector3<f64>> {
     Ok(Vector3::from(Vector::new(name, object)?.fixed::<3>(object.py(), name)?))
@@ -55,16 +84,17 @@ fn joint(tuple: &Bound<'_, PyTuple>) -> PyResult<JointDescription> {
     })
 }
 
-fn part(link: &str, tuple: &Bound<'_, PyTuple>) -> PyResult<Part> {
+fn part(tuple: &Bound<'_, PyTuple>) -> PyResult<(Part, Option<MeshFile>)> {
     let py = tuple.py();
+    let mut file = None;
     let kind: String = tuple.get_item(0)?.extract()?;
     let sizes = tuple.get_item(1)?;
     let geometry = match kind.as_str() {
         "mesh_file" => {
-            let (path, scale): (std::path::PathBuf, [f64; 3]) = sizes.extract()?;
-            let (vertices, triangles) = load_mesh(&path, scale)
-                .map_err(|error| to_python(py, Error::Geometry(format!("link '{link}': {error}"))))?;
-            Geometry::Mesh { vertices, triangles }
+            let (path, scale): (PathBuf, [f64; 3]) = sizes.extract()?;
+            file = Some(MeshFile { path, scale });
+            // Filled in by `Draft::load`.
+            Geometry::Mesh { vertices: vec![], triangles: vec![] }
         }
         "mesh" => {
             let vertices = rows::<3>("vertices", &sizes.get_item(0)?)?;
@@ -94,16 +124,18 @@ fn part(link: &str, tuple: &Bound<'_, PyTuple>) -> PyResult<Part> {
         }
         other => return Err(to_python(py, Error::Geometry(format!("unknown geometry kind '{other}'")))),
     };
-    Ok(Part { geometry, pose: placement("placement", &tuple.get_item(2)?)? })
+    Ok((Part { geometry, pose: placement("placement", &tuple.get_item(2)?)? }, file))
 }
 
-fn link(tuple: &Bound<'_, PyTuple>) -> PyResult<LinkDescription> {
+fn link(tuple: &Bound<'_, PyTuple>) -> PyResult<(LinkDescription, Vec<Option<MeshFile>>)> {
     let name: String = tuple.get_item(0)?.extract()?;
-    let mut geometry = vec![];
+    let (mut geometry, mut files) = (vec![], vec![]);
     for item in tuple.get_item(7)?.try_iter()? {
-        geometry.push(part(&name, item?.cast::<PyTuple>()?)?);
+        let (part, file) = part(item?.cast::<PyTuple>()?)?;
+        geometry.push(part);
+        files.push(file);
     }
-    Ok(LinkDescription {
+    let link = LinkDescription {
         joint: tuple.get_item(1)?.extract()?,
         placement: placement("placement", &tuple.get_item(2)?)?,
         parent: tuple.get_item(3)?.extract()?,
@@ -112,7 +144,8 @@ fn link(tuple: &Bound<'_, PyTuple>) -> PyResult<LinkDescription> {
         inertia: square("inertia", &tuple.get_item(6)?)?,
         geometry,
         name,
-    })
+    };
+    Ok((link, files))
 }
 
 /// A description of the loaders' tuples (`contactsense.loading.description` says what they hold).
@@ -122,7 +155,8 @@ pub fn description(
     links: &Bound<'_, PyAny>,
     gravity: &Bound<'_, PyAny>,
     warnings: Vec<String>,
-) -> PyResult<RobotDescription> {
+) -> PyResult<Draft> {
+    let mut files = vec![];
     let mut description = RobotDescription {
         name,
         joints: vec![],
@@ -134,7 +168,9 @@ pub fn description(
         description.joints.push(joint(item?.cast::<PyTuple>()?)?);
     }
     for item in links.try_iter()? {
-        description.links.push(link(item?.cast::<PyTuple>()?)?);
+        let (link, of_parts) = link(item?.cast::<PyTuple>()?)?;
+        description.links.push(link);
+        files.push(of_parts);
     }
-    Ok(description)
+    Ok(Draft { description, files })
 }

@@ -1,37 +1,127 @@
-//! The core's errors as the package's exceptions.
+//! The package's exceptions, and the core's errors as such.
+
+use std::panic::{catch_unwind, AssertUnwindSafe};
 
 use contactsense::Error;
-use pyo3::exceptions::PyMemoryError;
+use pyo3::exceptions::{PyException, PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::PyType;
+use pyo3::types::{PyDict, PyTuple, PyType};
 
-static CLASSES: PyOnceLock<[Py<PyType>; 3]> = PyOnceLock::new();
+struct Classes {
+    root: Py<PyType>,
+    model: Py<PyType>,
+    geometry: Py<PyType>,
+    input: Py<PyType>,
+}
 
-fn classes(py: Python<'_>) -> PyResult<&[Py<PyType>; 3]> {
+static CLASSES: PyOnceLock<Classes> = PyOnceLock::new();
+
+fn classes(py: Python<'_>) -> PyResult<&Classes> {
     CLASSES.get_or_try_init(py, || {
-        let module = py.import("contactsense.errors")?;
-        let class =
-            |name| -> PyResult<Py<PyType>> { Ok(module.getattr(name)?.cast_into::<PyType>()?.unbind()) };
-        Ok([class("ModelError")?, class("GeometryError")?, class("InputError")?])
+        let root = class(
+            py,
+            "ContactSenseError",
+            "Root of every error this library raises on purpose.",
+            &[py.get_type::<PyException>()],
+        )?;
+        Ok(Classes {
+            model: class(
+                py,
+                "ModelError",
+                "The robot's description (URDF or Pinocchio model) cannot be used; the message names the element.",
+                &[root.clone()],
+            )?
+            .unbind(),
+            geometry: class(
+                py,
+                "GeometryError",
+                "A mesh or shape of the robot's surface cannot be used; the message names the link or file.",
+                &[root.clone()],
+            )?
+            .unbind(),
+            input: class(
+                py,
+                "InputError",
+                "An argument of a call is wrong; the message names it and says what would be right.\n\n\
+                 The object's state is as it was before the call. Also raised where another thread is using the object.",
+                &[root.clone(), py.get_type::<PyValueError>()],
+            )?
+            .unbind(),
+            root: root.unbind(),
+        })
     })
+}
+
+/// An exception class, made as a `class` statement of Python makes it: one of two bases has no other way.
+fn class<'py>(
+    py: Python<'py>,
+    name: &str,
+    doc: &str,
+    bases: &[Bound<'py, PyType>],
+) -> PyResult<Bound<'py, PyType>> {
+    let members = PyDict::new(py);
+    // Where users find it, and where unpickling looks for it.
+    members.set_item("__module__", "contactsense")?;
+    members.set_item("__doc__", doc)?;
+    let made = py.get_type::<PyType>().call1((name, PyTuple::new(py, bases)?, members))?;
+    Ok(made.cast_into::<PyType>()?)
+}
+
+/// Adds the classes to the module.
+pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    let Classes { root, model, geometry, input } = classes(module.py())?;
+    module.add("ContactSenseError", root)?;
+    module.add("ModelError", model)?;
+    module.add("GeometryError", geometry)?;
+    module.add("InputError", input)
 }
 
 /// A Python exception that says what the core said.
 pub fn to_python(py: Python<'_>, error: Error) -> PyErr {
-    let (index, text) = match error {
-        Error::Model(text) => (0, text),
-        Error::Geometry(text) => (1, text),
-        Error::Input(text) => (2, text),
+    let classes = match classes(py) {
+        Ok(classes) => classes,
+        Err(error) => return error,
+    };
+    let (class, text) = match error {
+        Error::Model(text) => (&classes.model, text),
+        Error::Geometry(text) => (&classes.geometry, text),
+        Error::Input(text) => (&classes.input, text),
         Error::Memory(text) => return PyMemoryError::new_err(text),
     };
-    match classes(py) {
-        Ok(classes) => PyErr::from_type(classes[index].bind(py).clone(), text),
-        Err(error) => error,
-    }
+    PyErr::from_type(class.bind(py).clone(), text)
 }
 
 /// An `InputError`.
 pub fn input(py: Python<'_>, text: String) -> PyErr {
     to_python(py, Error::Input(text))
+}
+
+/// Whether what reading an argument raised is the argument's fault: no `KeyboardInterrupt` or another exception that is
+/// no `Exception`, and no `MemoryError`.
+pub fn is_fault(py: Python<'_>, error: &PyErr) -> bool {
+    error.is_instance_of::<PyException>(py) && !error.is_instance_of::<PyMemoryError>(py)
+}
+
+/// An `InputError` for what reading an argument raised, where that is the argument's fault.
+pub fn refused(py: Python<'_>, cause: PyErr, text: impl FnOnce() -> String) -> PyErr {
+    if !is_fault(py, &cause) {
+        return cause;
+    }
+    let error = input(py, text());
+    error.set_cause(py, Some(cause));
+    error
+}
+
+/// Runs long work while other Python threads run. A panic in it, a bug of this library, is a `ContactSenseError`.
+pub fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    py.detach(|| catch_unwind(AssertUnwindSafe(work))).map_err(|panic| {
+        let said = panic.downcast_ref::<String>().map(String::as_str);
+        let said = said.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no message");
+        let text = format!("internal error of contactsense, please report it: {said}");
+        match classes(py) {
+            Ok(classes) => PyErr::from_type(classes.root.bind(py).clone(), text),
+            Err(error) => error,
+        }
+    })
 }

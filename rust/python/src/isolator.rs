@@ -1,6 +1,6 @@
 //! `ContactIsolator`, `Isolation`, `Contact` and `Candidate`.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use contactsense::isolation::{Candidate, Contact, ContactIsolator, Isolation, IsolatorOptions};
 use contactsense::robot::Robot;
@@ -10,7 +10,8 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arrays::{whole, Number, Readings, Vector};
+use crate::arguments::{pushing, robot, sole, whole};
+use crate::arrays::{Number, Readings, Vector};
 use crate::errors::to_python;
 use crate::observer::scalar_or_vector;
 use crate::robot::PyRobot;
@@ -246,10 +247,14 @@ pub fn contact_count(object: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
 /// contacts are meant and not reported (eq. 20). `max_contacts`: reported at most. `pushing`: forces push on the surface
 /// (if False the point cannot be determined: `located` is False). `locate_within` [m], default 0.05: a contact is located
 /// if 90 % of the places that explain the torques are within this distance of its point. Raises `InputError` that names the argument.
-#[pyclass(name = "ContactIsolator", module = "contactsense._core")]
+#[pyclass(frozen, name = "ContactIsolator", module = "contactsense._core")]
 pub struct PyContactIsolator {
     robot: Arc<Robot>,
     sensors: Arc<[String]>,
+    state: Mutex<State>,
+}
+
+struct State {
     isolator: ContactIsolator,
     wrenches: Vec<Vector6<f64>>,
 }
@@ -258,20 +263,22 @@ pub struct PyContactIsolator {
 impl PyContactIsolator {
     #[new]
     #[pyo3(signature = (robot, *, sensors=None, torque_threshold=None, wrench_threshold=None, wanted_contacts=None,
-                        max_contacts=None, pushing=true, locate_within=Number(0.05)))]
+                        max_contacts=None, pushing=true, locate_within=None))]
     fn new(
-        robot: &Bound<'_, PyRobot>,
+        #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
         sensors: Option<&Bound<'_, PyAny>>,
         torque_threshold: Option<&Bound<'_, PyAny>>,
         wrench_threshold: Option<&Bound<'_, PyAny>>,
         wanted_contacts: Option<&Bound<'_, PyAny>>,
         max_contacts: Option<&Bound<'_, PyAny>>,
-        pushing: bool,
-        locate_within: Number,
+        #[pyo3(from_py_with = pushing)] pushing: bool,
+        locate_within: Option<Number>,
     ) -> PyResult<Self> {
         let mut options =
             IsolatorOptions { max_contacts: contact_count(max_contacts)?, pushing, ..Default::default() };
-        options.locate_within = locate_within.0;
+        if let Some(distance) = locate_within {
+            options.locate_within = distance.named("locate_within")?;
+        }
         if let Some(sensors) = sensors {
             options.sensors = self::sensors(sensors)?;
         }
@@ -288,7 +295,7 @@ impl PyContactIsolator {
         let isolator = ContactIsolator::new(shared.clone(), &options);
         let isolator = isolator.map_err(|error| to_python(robot.py(), error))?;
         let sensors = isolator.sensors().names().into();
-        Ok(Self { robot: shared, sensors, isolator, wrenches: vec![] })
+        Ok(Self { robot: shared, sensors, state: Mutex::new(State { isolator, wrenches: vec![] }) })
     }
 
     /// Contacts that explain the external torque `tau_ext` `(nv,)` at the configuration `q` `(nq,)`.
@@ -298,18 +305,20 @@ impl PyContactIsolator {
     /// names the argument.
     #[pyo3(signature = (q, tau_ext, wrenches=None))]
     fn isolate(
-        &mut self,
+        &self,
         py: Python<'_>,
         q: &Bound<'_, PyAny>,
         tau_ext: &Bound<'_, PyAny>,
         wrenches: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyIsolation> {
         let (q, tau_ext) = (Vector::new("q", q)?, Vector::new("tau_ext", tau_ext)?);
-        self.wrenches.clear();
-        if let Some(wrenches) = wrenches {
-            self.wrenches.extend(Readings::new(wrenches)?.rows().iter().map(|row| Vector6::from(*row)));
-        }
-        let isolation = self.isolator.isolate_sensed(q.slice(), tau_ext.slice(), &self.wrenches);
+        let given = wrenches.map(Readings::new).transpose()?;
+        let given = given.as_ref().map_or(&[][..], |given| given.rows());
+        let mut state = sole(py, "ContactIsolator", &self.state)?;
+        let State { isolator, wrenches } = &mut *state;
+        wrenches.clear();
+        wrenches.extend(given.iter().map(|row| Vector6::from(*row)));
+        let isolation = isolator.isolate_sensed(q.slice(), tau_ext.slice(), wrenches);
         let isolation = isolation.map_err(|error| to_python(py, error))?.clone();
         Ok(PyIsolation { robot: self.robot.clone(), sensors: self.sensors.clone(), isolation })
     }

@@ -4,6 +4,7 @@
 
 use pyo3::prelude::*;
 
+mod arguments;
 mod arrays;
 mod compensator;
 mod description;
@@ -22,6 +23,7 @@ mod urdf;
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("build_profile", if cfg!(debug_assertions) { "debug" } else { "release" })?;
+    errors::register(module)?;
     module.add_function(wrap_pyfunction!(urdf::_robot_from_urdf, module)?)?;
     module.add_class::<robot::PyRobot>()?;
     module.add_class::<surface::PySurface>()?;

@@ -144,7 +144,7 @@ impl PyContactMonitor {
     #[new]
     #[pyo3(signature = (robot, *, dt, sensors=None, wanted_contacts=None, observer_gain=None, torque_threshold=None,
                         wrench_threshold=None, wrench_gain=None, bias_time_constant=None, bias_limit=None, bias_settle_time=None, hysteresis=None, hold_time=None,
-                        max_contacts=None, pushing=true, locate_within=Number(0.05)))]
+                        max_contacts=None, pushing=true, locate_within=None))]
     #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
         robot: &Bound<'_, PyRobot>,
@@ -162,7 +162,7 @@ impl PyContactMonitor {
         hold_time: Option<Number>,
         max_contacts: Option<&Bound<'_, PyAny>>,
         pushing: bool,
-        locate_within: Number,
+        locate_within: Option<Number>,
     ) -> PyResult<Self> {
         let mut options = MonitorOptions::new(dt.0);
         if let Some(gain) = observer_gain {
@@ -176,7 +176,9 @@ impl PyContactMonitor {
         }
         options.isolation.max_contacts = contact_count(max_contacts)?;
         options.isolation.pushing = pushing;
-        options.isolation.locate_within = locate_within.0;
+        if let Some(distance) = locate_within {
+            options.isolation.locate_within = distance.named("locate_within")?;
+        }
         if let Some(hold_time) = hold_time {
             options.hold_time = hold_time.0;
         }

@@ -1,18 +1,21 @@
 //! `MomentumObserver`.
 
+use std::sync::{Mutex, MutexGuard};
+
 use contactsense::observer::MomentumObserver;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::arrays::{Number, Vector};
+use crate::arguments::{number_if_any, robot, sole, Number};
+use crate::arrays::Vector;
 use crate::errors::to_python;
 use crate::robot::PyRobot;
 
 /// A scalar, or one number per velocity variable.
 pub fn scalar_or_vector(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
-    match object.extract::<f64>() {
-        Ok(number) => Ok(vec![number]),
-        Err(_) => Ok(Vector::new(name, object)?.slice().to_vec()),
+    match number_if_any(object)? {
+        Some(number) => Ok(vec![number]),
+        None => Ok(Vector::new(name, object)?.slice().to_vec()),
     }
 }
 
@@ -23,18 +26,28 @@ pub fn scalar_or_vector(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<f
 ///
 /// `dt`: time between two calls [s]; `gain`: scalar or `(nv,)` [1/s], default 50. Raises `InputError` that names the
 /// argument.
-#[pyclass(name = "MomentumObserver", module = "contactsense._core")]
-pub struct PyMomentumObserver(MomentumObserver);
+#[pyclass(frozen, name = "MomentumObserver", module = "contactsense._core")]
+pub struct PyMomentumObserver(Mutex<MomentumObserver>);
+
+impl PyMomentumObserver {
+    fn sole(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, MomentumObserver>> {
+        sole(py, "MomentumObserver", &self.0)
+    }
+}
 
 #[pymethods]
 impl PyMomentumObserver {
     #[new]
     #[pyo3(signature = (robot, *, dt, gain=None))]
-    fn new(robot: &Bound<'_, PyRobot>, dt: Number, gain: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+    fn new(
+        #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
+        dt: Number<'_, '_>,
+        gain: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
         let py = robot.py();
         let gain = gain.map_or(Ok(vec![50.0]), |gain| scalar_or_vector("gain", gain))?;
-        let observer = MomentumObserver::new(robot.get().0.clone(), dt.0, &gain);
-        Ok(Self(observer.map_err(|error| to_python(py, error))?))
+        let observer = MomentumObserver::new(robot.get().0.clone(), dt.named("dt")?, &gain);
+        Ok(Self(Mutex::new(observer.map_err(|error| to_python(py, error))?)))
     }
 
     /// One tick; the external torque `(nv,)`, a fresh array. The first call sets the initial momentum, returns zeros.
@@ -44,37 +57,40 @@ impl PyMomentumObserver {
     /// `tau`, is subtracted from it. Raises `InputError` that names the argument; the state is then unchanged.
     #[pyo3(signature = (q, v, tau, *, dt=None, friction=None))]
     fn update<'py>(
-        &mut self,
+        &self,
         q: &Bound<'py, PyAny>,
         v: &Bound<'py, PyAny>,
         tau: &Bound<'py, PyAny>,
-        dt: Option<Number>,
+        dt: Option<Number<'_, '_>>,
         friction: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let py = q.py();
         let (q, v, tau) = (Vector::new("q", q)?, Vector::new("v", v)?, Vector::new("tau", tau)?);
         let friction = Vector::optional("friction", friction)?;
         let friction = friction.as_ref().map(|friction| friction.slice());
-        match self.0.update(q.slice(), v.slice(), tau.slice(), friction, dt.map(|dt| dt.0)) {
+        let dt = dt.map(|dt| dt.named("dt")).transpose()?;
+        let mut observer = self.sole(py)?;
+        match observer.update(q.slice(), v.slice(), tau.slice(), friction, dt) {
             Ok(torque) => Ok(PyArray1::from_slice(py, torque)),
             Err(error) => Err(to_python(py, error)),
         }
     }
 
     /// Forgets all ticks; the next call is a first call.
-    fn reset(&mut self) {
-        self.0.reset();
+    fn reset(&self, py: Python<'_>) -> PyResult<()> {
+        self.sole(py)?.reset();
+        Ok(())
     }
 
     /// Of the last tick, `(nv,)`; a copy.
     #[getter]
-    fn external_torque<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.0.external_torque())
+    fn external_torque<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(PyArray1::from_slice(py, self.sole(py)?.external_torque()))
     }
 
     /// Estimated acceleration at the last tick, `(nv,)`: forward dynamics with the external torque.
     #[getter]
-    fn acceleration<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.0.acceleration())
+    fn acceleration<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(PyArray1::from_slice(py, self.sole(py)?.acceleration()))
     }
 }

@@ -7,14 +7,22 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
+use crate::arguments::text;
 use crate::arrays::{matrix, pose, Vector};
 use crate::description::description;
-use crate::errors::{input, to_python};
+use crate::errors::{detached, input, to_python};
 use crate::surface::PySurface;
 
 /// A robot: immutable, shareable between threads.
 #[pyclass(frozen, subclass, name = "Robot", module = "contactsense._core")]
 pub struct PyRobot(pub Arc<Robot>);
+
+impl PyRobot {
+    /// Index of a link by its name.
+    fn link(&self, link: &Bound<'_, PyAny>) -> PyResult<usize> {
+        self.0.link(text("link", link)?).map_err(|error| to_python(link.py(), error))
+    }
+}
 
 #[pymethods]
 impl PyRobot {
@@ -28,7 +36,8 @@ impl PyRobot {
         warnings: Vec<String>,
     ) -> PyResult<Self> {
         let description = description(name, joints, links, gravity, warnings)?;
-        Ok(Self(Arc::new(Robot::new(description).map_err(|error| to_python(py, error))?)))
+        let robot = detached(py, || description.load().and_then(Robot::new))?;
+        Ok(Self(Arc::new(robot.map_err(|error| to_python(py, error))?)))
     }
 
     /// The robot's name.
@@ -131,10 +140,14 @@ impl PyRobot {
     /// Pose of a link in the world, `(4, 4)`; any URDF link, also one without surface.
     ///
     /// Raises `InputError` that names the argument; an unknown link's message lists the links.
-    fn link_pose<'py>(&self, q: &Bound<'py, PyAny>, link: &str) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn link_pose<'py>(
+        &self,
+        q: &Bound<'py, PyAny>,
+        link: &Bound<'_, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let py = q.py();
         let q = Vector::new("q", q)?;
-        let link = self.0.link(link).map_err(|error| to_python(py, error))?;
+        let link = self.link(link)?;
         pose(py, &self.0.link_pose(q.slice(), link).map_err(|error| to_python(py, error))?)
     }
 
@@ -146,12 +159,12 @@ impl PyRobot {
     fn jacobian<'py>(
         &self,
         q: &Bound<'py, PyAny>,
-        link: &str,
+        link: &Bound<'_, PyAny>,
         point: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let py = q.py();
         let q = Vector::new("q", q)?;
-        let link = self.0.link(link).map_err(|error| to_python(py, error))?;
+        let link = self.link(link)?;
         let point = Vector::optional("point", point)?;
         let point = point.map(|point| point.fixed::<3>(py, "point")).transpose()?;
         matrix(py, &self.0.jacobian(q.slice(), link, point).map_err(|error| to_python(py, error))?)
@@ -160,14 +173,18 @@ impl PyRobot {
     /// The surface of a link, in the link frame.
     ///
     /// Raises `InputError` where the link is unknown or has no surface.
-    fn surface(&self, py: Python<'_>, link: &str) -> PyResult<PySurface> {
-        let index = self.0.link(link).map_err(|error| to_python(py, error))?;
+    fn surface(&self, py: Python<'_>, link: &Bound<'_, PyAny>) -> PyResult<PySurface> {
+        let index = self.link(link)?;
         if self.0.links()[index].surface.is_none() {
             let names: Vec<&str> =
                 self.0.touchable_links().iter().map(|i| self.0.links()[*i].name.as_str()).collect();
             return Err(input(
                 py,
-                format!("link: '{link}' has no surface; links that have one: {}", names.join(", ")),
+                format!(
+                    "link: '{}' has no surface; links that have one: {}",
+                    text("link", link)?,
+                    names.join(", ")
+                ),
             ));
         }
         Ok(PySurface { robot: self.0.clone(), link: index })

@@ -6,9 +6,10 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
+use crate::arguments::{number_if_any, shown, text};
 use crate::arrays::{pose, rows};
 use crate::description::placement;
-use crate::errors::input;
+use crate::errors::{input, refused};
 
 const LAST_ROW: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
 
@@ -24,20 +25,16 @@ pub struct PyForceTorqueSensor(pub ForceTorqueSensor);
 #[pymethods]
 impl PyForceTorqueSensor {
     #[new]
-    #[pyo3(signature = (name, link, *, pose=None, convention="load"))]
+    #[pyo3(signature = (name, link, *, pose=None, convention=None),
+           text_signature = "(name, link, *, pose=None, convention='load')")]
     fn new(
         py: Python<'_>,
         name: &Bound<'_, PyAny>,
         link: &Bound<'_, PyAny>,
         pose: Option<&Bound<'_, PyAny>>,
-        convention: &str,
+        convention: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let text = |argument: &str, object: &Bound<'_, PyAny>| {
-            object
-                .extract::<String>()
-                .map_err(|_| input(py, format!("{argument}: expected a string, got {object}")))
-        };
-        let convention = match convention {
+        let convention = match convention.map_or(Ok("load"), |convention| text("convention", convention))? {
             "load" => Convention::Load,
             "support" => Convention::Support,
             other => {
@@ -54,8 +51,12 @@ impl PyForceTorqueSensor {
             }
             placement("pose", object)
         })?;
-        let sensor =
-            ForceTorqueSensor { name: text("name", name)?, link: text("link", link)?, pose, convention };
+        let sensor = ForceTorqueSensor {
+            name: text("name", name)?.into(),
+            link: text("link", link)?.into(),
+            pose,
+            convention,
+        };
         if !sensor.has_rigid_pose() {
             return Err(input(py, "pose: must be rigid: a rotation matrix and a translation [m]".into()));
         }
@@ -101,19 +102,21 @@ impl PyForceTorqueSensor {
 
 /// The sensors of an iterable; a single one is no iterable of sensors.
 pub fn sensors(object: &Bound<'_, PyAny>) -> PyResult<Vec<ForceTorqueSensor>> {
-    let refused = || input(object.py(), "sensors: expected an iterable of ForceTorqueSensor".into());
+    let py = object.py();
+    let refuse = |cause| refused(py, cause, || "sensors: expected an iterable of ForceTorqueSensor".into());
     let mut found = vec![];
-    for item in object.try_iter().map_err(|_| refused())? {
-        found.push(item?.cast::<PyForceTorqueSensor>().map_err(|_| refused())?.get().0.clone());
+    for item in object.try_iter().map_err(refuse)? {
+        let item = item.map_err(refuse)?;
+        found.push(item.cast::<PyForceTorqueSensor>().map_err(|error| refuse(error.into()))?.get().0.clone());
     }
     Ok(found)
 }
 
 /// A scalar, or rows of six.
 pub fn wrench_thresholds(object: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
-    match object.extract::<f64>() {
-        Ok(number) => Ok(vec![number]),
-        Err(_) => Ok(rows::<6>("wrench_threshold", object)?.concat()),
+    match number_if_any(object)? {
+        Some(number) => Ok(vec![number]),
+        None => Ok(rows::<6>("wrench_threshold", object)?.concat()),
     }
 }
 
@@ -123,13 +126,15 @@ pub fn sensor_names(object: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
 
 /// An iterable of strings, but no string itself: names of `what`.
 pub fn names(argument: &str, what: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
-    let refused = || input(object.py(), format!("{argument}: expected an iterable of the names of {what}"));
+    let py = object.py();
+    let wanted = || format!("{argument}: expected an iterable of the names of {what}, got {}", shown(object));
+    let refuse = |cause| refused(py, cause, wanted);
     if object.is_instance_of::<PyString>() {
-        return Err(refused());
+        return Err(input(py, wanted()));
     }
     let mut names = vec![];
-    for item in object.try_iter().map_err(|_| refused())? {
-        names.push(item?.extract().map_err(|_| refused())?);
+    for item in object.try_iter().map_err(refuse)? {
+        names.push(item.map_err(refuse)?.extract().map_err(refuse)?);
     }
     Ok(names)
 }

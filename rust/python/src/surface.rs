@@ -5,15 +5,19 @@ use std::sync::Arc;
 use contactsense::robot::Robot;
 use contactsense::surface::{RayHit, Surface};
 use nalgebra::Vector3;
-use numpy::{PyArray1, PyArray2};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
-use crate::arrays::{from_rows, rows, whole};
-use crate::errors::{input, to_python};
+use crate::arguments::whole;
+use crate::arrays::{from_rows, reserve, rows};
+use crate::errors::{detached, input, to_python};
 use contactsense::Error;
 
 /// Samples of one call at most: they fit into memory.
 const MOST_SAMPLES: u64 = 100_000_000;
+
+/// Queries between two looks at signals: milliseconds of work.
+const SLICE: usize = 4096;
 
 /// One link's surface, in the link frame.
 #[pyclass(frozen, name = "Surface", module = "contactsense._core")]
@@ -68,10 +72,6 @@ impl PySurface {
     }
 }
 
-fn array(vector: &Vector3<f64>) -> [f64; 3] {
-    [vector.x, vector.y, vector.z]
-}
-
 #[pymethods]
 impl PySurface {
     /// Vertices, `(n, 3)`, link frame [m]; of exact primitives a tessellation, for display.
@@ -83,7 +83,6 @@ impl PySurface {
     /// Vertex indices, `(m, 3)`, counter-clockwise seen from outside.
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
-        use numpy::PyArrayMethods;
         let triangles = self.core(py)?.triangles();
         let flat: Vec<i64> = triangles.iter().flatten().map(|index| i64::from(*index)).collect();
         PyArray1::from_vec(py, flat).reshape([triangles.len(), 3])
@@ -103,24 +102,36 @@ impl PySurface {
 
     /// The nearest surface point of each query; the minimum over the link's parts.
     ///
-    /// `points` is `(n, 3)` in the link frame [m]. Distances are unsigned. Raises `InputError` that names the argument.
+    /// `points` is `(n, 3)` in the link frame [m]. Distances are unsigned. Raises `InputError` that names the argument,
+    /// `MemoryError` where the answer does not fit into memory.
     fn closest_points(&self, py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<ClosestPoints> {
         let surface = self.core(py)?;
         let points = rows::<3>("points", points)?;
-        let found: Vec<_> =
-            py.detach(|| points.iter().map(|p| surface.closest_point(&Vector3::from(*p))).collect());
+        let mut found = Places::with_room(points.len())?;
+        let mut distances = vec![];
+        reserve(&mut distances, points.len())?;
+        in_slices(py, points.chunks(SLICE), |slice| {
+            for point in slice {
+                let hit = surface.closest_point(&Vector3::from(*point));
+                found.push(&hit.point, &hit.normal, hit.triangle);
+                distances.push(hit.distance);
+            }
+            Ok(())
+        })?;
+        let (points, normals, triangles) = found.arrays(py)?;
         Ok(ClosestPoints {
-            points: from_rows(py, found.iter().map(|hit| array(&hit.point)))?.unbind(),
-            normals: from_rows(py, found.iter().map(|hit| array(&hit.normal)))?.unbind(),
-            distances: PyArray1::from_iter(py, found.iter().map(|hit| hit.distance)).unbind(),
-            triangles: PyArray1::from_iter(py, found.iter().map(|hit| hit.triangle)).unbind(),
+            points,
+            normals,
+            distances: PyArray1::from_vec(py, distances).unbind(),
+            triangles,
         })
     }
 
     /// Every hit of each ray, sorted by distance per ray. Watertight: a closed mesh is entered as often as left.
     ///
     /// `origins` and `directions` are `(n, 3)` in the link frame; directions need not be unit, distances are in metres.
-    /// Hits inside another closed part of the link are left out. Raises `InputError` that names the argument.
+    /// Hits inside another closed part of the link are left out. Raises `InputError` that names the argument,
+    /// `MemoryError` where the answer does not fit into memory.
     fn cast_rays(
         &self,
         py: Python<'_>,
@@ -141,19 +152,39 @@ impl PySurface {
         if let Some(row) = directions.iter().position(|d| Vector3::from(*d).amax() < f64::MIN_POSITIVE) {
             return Err(input(py, format!("directions: row {row} is zero")));
         }
-        let (ray, hits) = py.detach(|| cast_all(surface, &origins, &directions));
+        let mut found = Places::with_room(origins.len())?;
+        let (mut rays, mut distances) = (vec![], vec![]);
+        let mut hits = Vec::with_capacity(64);
+        let mut index = 0;
+        in_slices(py, origins.chunks(SLICE).zip(directions.chunks(SLICE)), |(origins, directions)| {
+            for (origin, direction) in origins.iter().zip(directions) {
+                cast(surface, origin, direction, &mut hits);
+                reserve(&mut rays, hits.len())?;
+                reserve(&mut distances, hits.len())?;
+                found.reserve(hits.len())?;
+                for hit in &hits {
+                    rays.push(index);
+                    distances.push(hit.distance);
+                    found.push(&hit.point, &hit.normal, hit.triangle);
+                }
+                index += 1;
+            }
+            Ok(())
+        })?;
+        let (point, normal, triangle) = found.arrays(py)?;
         Ok(RayHits {
-            ray: PyArray1::from_vec(py, ray).unbind(),
-            distance: PyArray1::from_iter(py, hits.iter().map(|hit| hit.distance)).unbind(),
-            point: from_rows(py, hits.iter().map(|hit| array(&hit.point)))?.unbind(),
-            normal: from_rows(py, hits.iter().map(|hit| array(&hit.normal)))?.unbind(),
-            triangle: PyArray1::from_iter(py, hits.iter().map(|hit| hit.triangle)).unbind(),
+            ray: PyArray1::from_vec(py, rays).unbind(),
+            distance: PyArray1::from_vec(py, distances).unbind(),
+            point,
+            normal,
+            triangle,
         })
     }
 
     /// `n` random points, uniform by area over the exposed surface; the same for the same seed.
     ///
-    /// A larger `n` appends to the same points.
+    /// A larger `n` appends to the same points. Raises `InputError` that names the argument, `MemoryError` where the points
+    /// do not fit into memory.
     #[pyo3(signature = (n, seed=None), text_signature = "($self, n, seed=0)")]
     fn sample(
         &self,
@@ -161,34 +192,87 @@ impl PySurface {
         n: &Bound<'_, PyAny>,
         seed: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<SurfaceSamples> {
-        let n = whole("n", n, MOST_SAMPLES)?;
+        let n = whole("n", n, MOST_SAMPLES)? as usize;
         let seed = seed.map_or(Ok(0), |seed| whole("seed", seed, u64::MAX))?;
-        let surface = self.core(py)?;
-        let found = py.detach(|| surface.sample(n as usize, seed));
-        Ok(SurfaceSamples {
-            points: from_rows(py, found.iter().map(|hit| array(&hit.point)))?.unbind(),
-            normals: from_rows(py, found.iter().map(|hit| array(&hit.normal)))?.unbind(),
-            triangles: PyArray1::from_iter(py, found.iter().map(|hit| hit.triangle)).unbind(),
-        })
+        let mut sampling = self.core(py)?.sampling(n, seed);
+        let mut found = Places::with_room(n)?;
+        let mut drawn = Vec::with_capacity(n.min(SLICE));
+        let mut more = true;
+        while more {
+            more = detached(py, || {
+                let more = sampling.draw(SLICE as u64, &mut drawn);
+                drawn.drain(..).for_each(|hit| found.push(&hit.point, &hit.normal, hit.triangle));
+                more
+            })?;
+            if more {
+                py.check_signals()?;
+            }
+        }
+        let (points, normals, triangles) = found.arrays(py)?;
+        Ok(SurfaceSamples { points, normals, triangles })
     }
 }
 
-/// Hits of all rays, and the ray of each.
-fn cast_all(surface: &Surface, origins: &[[f64; 3]], directions: &[[f64; 3]]) -> (Vec<i64>, Vec<RayHit>) {
-    let mut rays = Vec::new();
-    let mut all = Vec::with_capacity(4 * origins.len());
-    let mut hits = Vec::with_capacity(64);
-    for (index, (origin, direction)) in origins.iter().zip(directions).enumerate() {
-        // Scaled first, so that no square overflows.
-        let direction = Vector3::from(*direction);
-        let direction = (direction / direction.amax()).normalize();
+/// Every hit of one ray.
+fn cast(surface: &Surface, origin: &[f64; 3], direction: &[f64; 3], hits: &mut Vec<RayHit>) {
+    // Scaled first, so that no square overflows.
+    let direction = Vector3::from(*direction);
+    let direction = (direction / direction.amax()).normalize();
+    hits.clear();
+    while !surface.cast_line_into(&Vector3::from(*origin), &direction, 0.0, hits) {
         hits.clear();
-        while !surface.cast_line_into(&Vector3::from(*origin), &direction, 0.0, &mut hits) {
-            hits.clear();
-            hits.reserve(2 * hits.capacity());
-        }
-        rays.resize(rays.len() + hits.len(), index as i64);
-        all.extend_from_slice(&hits);
+        hits.reserve(2 * hits.capacity());
     }
-    (rays, all)
+}
+
+/// Points with their normals and triangles, as columns.
+#[derive(Default)]
+struct Places {
+    points: Vec<f64>,
+    normals: Vec<f64>,
+    triangles: Vec<i64>,
+}
+
+type PlaceArrays = (Py<PyArray2<f64>>, Py<PyArray2<f64>>, Py<PyArray1<i64>>);
+
+impl Places {
+    fn with_room(count: usize) -> PyResult<Self> {
+        let mut places = Self::default();
+        places.reserve(count)?;
+        Ok(places)
+    }
+
+    fn reserve(&mut self, more: usize) -> PyResult<()> {
+        reserve(&mut self.points, 3 * more)?;
+        reserve(&mut self.normals, 3 * more)?;
+        reserve(&mut self.triangles, more)
+    }
+
+    fn push(&mut self, point: &Vector3<f64>, normal: &Vector3<f64>, triangle: i64) {
+        self.points.extend_from_slice(point.as_slice());
+        self.normals.extend_from_slice(normal.as_slice());
+        self.triangles.push(triangle);
+    }
+
+    /// Without a copy.
+    fn arrays(self, py: Python<'_>) -> PyResult<PlaceArrays> {
+        let count = self.triangles.len();
+        let rows = |flat| PyResult::Ok(PyArray1::from_vec(py, flat).reshape([count, 3])?.unbind());
+        Ok((rows(self.points)?, rows(self.normals)?, PyArray1::from_vec(py, self.triangles).unbind()))
+    }
+}
+
+/// Works slice by slice while other Python threads run; between slices Ctrl-C interrupts.
+fn in_slices<T: Send>(
+    py: Python<'_>,
+    slices: impl Iterator<Item = T>,
+    mut work: impl FnMut(T) -> PyResult<()> + Send,
+) -> PyResult<()> {
+    for (number, slice) in slices.enumerate() {
+        if number > 0 {
+            py.check_signals()?;
+        }
+        detached(py, || work(slice))??;
+    }
+    Ok(())
 }

@@ -7,7 +7,7 @@ use contactsense::robot::{Robot, UrdfGeometry, UrdfOptions};
 use nalgebra::Vector3;
 use pyo3::prelude::*;
 
-use crate::errors::{input, to_python};
+use crate::errors::{detached, input, to_python};
 use crate::robot::PyRobot;
 
 /// A robot read without Pinocchio; `locked` are pairs of a name and a position or `None`.
@@ -37,6 +37,6 @@ pub fn _robot_from_urdf(
         geometry,
         gravity: Vector3::from(gravity),
     };
-    let robot = py.detach(|| Robot::from_urdf(path, &options));
+    let robot = detached(py, || Robot::from_urdf(path, &options))?;
     Ok(PyRobot(Arc::new(robot.map_err(|error| to_python(py, error))?)))
 }

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::configuration::LARGEST;
 use super::description::{JointDescription, JointKind, RobotDescription};
 use super::link::{check_link_tree, Link};
 use crate::error::{Error, Result};
@@ -44,6 +45,20 @@ pub struct Robot {
     warnings: Vec<String>,
 }
 
+/// Smallest mass [kg] and moment of inertia [kg m^2] that is not zero: computing with less loses its digits.
+const LEAST_INERTIA: f64 = 1e-60;
+
+fn check_size(owner: &str, mass: f64, inertia: &Matrix3<f64>) -> Result<()> {
+    for (what, unit, size) in [("mass", "kg", mass.abs()), ("inertia", "kg m^2", inertia.amax())] {
+        if size != 0.0 && !(LEAST_INERTIA..LARGEST).contains(&size) {
+            return Err(Error::Model(format!(
+                "{owner}: {what} must be 0 or from {LEAST_INERTIA:e} to {LARGEST:e} {unit}, not {size:e}"
+            )));
+        }
+    }
+    Ok(())
+}
+
 /// A description that was checked: finite numbers, parents before children.
 fn check_joint(joint: &JointDescription, number: usize) -> Result<()> {
     let name = &joint.name;
@@ -55,6 +70,7 @@ fn check_joint(joint: &JointDescription, number: usize) -> Result<()> {
     if !finite.chain([&joint.mass, &joint.armature]).all(|x| x.is_finite()) {
         return Err(Error::Model(format!("joint '{name}': placement, axis and inertia must be finite")));
     }
+    check_size(&format!("joint '{name}'"), joint.mass, &joint.inertia)?;
     if joint.mass < 0.0 || joint.armature < 0.0 {
         return Err(Error::Model(format!("joint '{name}': mass and armature must not be negative")));
     }
@@ -88,8 +104,11 @@ impl Robot {
     /// [`Error::Model`] for joints and links that cannot be used, [`Error::Geometry`] for surfaces.
     pub fn new(description: RobotDescription) -> Result<Robot> {
         let RobotDescription { name, joints, links, gravity, mut warnings } = description;
-        if !gravity.iter().all(|x| x.is_finite()) {
-            return Err(Error::Model("gravity must be three finite numbers".into()));
+        if !gravity.iter().all(|x| x.abs() < LARGEST) {
+            return Err(Error::Model(format!(
+                "gravity must be three finite numbers below {LARGEST:e} m/s^2, not {:e}, {:e}, {:e}",
+                gravity.x, gravity.y, gravity.z
+            )));
         }
         let mut frames = vec![Matrix3::identity()];
         let mut bodies = vec![Body::world()];
@@ -132,6 +151,7 @@ impl Robot {
             if link_index.insert(link.name.clone(), index).is_some() {
                 return Err(Error::Model(format!("two links are named '{}'", link.name)));
             }
+            check_size(&format!("link '{}'", link.name), link.mass, &link.inertia)?;
             let frame = frames[link.joint].transpose();
             let placement = Pose {
                 rotation: frame * link.placement.rotation,

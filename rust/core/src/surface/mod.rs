@@ -36,6 +36,7 @@ use nalgebra::Vector3;
 use crate::Result;
 use part::Solid;
 use sample::Sampler;
+pub use sample::Sampling;
 
 /// The point of a surface nearest to a query.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -212,6 +213,13 @@ impl Surface {
     ///
     /// Gives fewer than `n` only if less than about a thousandth of the area is exposed.
     pub fn sample(&self, n: usize, seed: u64) -> Vec<SurfacePoint> {
-        self.sampler.sample(&self.solids, n, seed)
+        let mut points = Vec::with_capacity(n);
+        self.sampling(n, seed).draw(u64::MAX, &mut points);
+        points
+    }
+
+    /// The points of [`sample`](Self::sample), to be drawn in parts.
+    pub fn sampling(&self, n: usize, seed: u64) -> Sampling<'_> {
+        Sampling::new(&self.sampler, &self.solids, n, seed)
     }
 }

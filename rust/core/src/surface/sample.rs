@@ -42,37 +42,12 @@ impl Sampler {
         self.parts.last().copied().unwrap_or(0.0)
     }
 
-    pub fn sample(&self, solids: &[Solid], n: usize, seed: u64) -> Vec<SurfacePoint> {
-        self.draw(solids, n, seed).0
-    }
-
     /// Share of the area that is exposed, from a few thousand points.
     pub fn exposed_share(&self, solids: &[Solid]) -> f64 {
-        let (points, attempts) = self.draw(solids, 4000, 0);
-        points.len() as f64 / attempts.max(1) as f64
-    }
-
-    /// Points, and how many were tried.
-    fn draw(&self, solids: &[Solid], n: usize, seed: u64) -> (Vec<SurfacePoint>, u64) {
-        let mut points = Vec::with_capacity(n);
-        let random = Stream::new(seed);
-        let mut attempt = 0u64;
-        while points.len() < n && attempt < ATTEMPTS.saturating_mul(n as u64 + 10) {
-            let u = [0, 1, 2, 3].map(|k| random.uniform(attempt * 4 + k));
-            attempt += 1;
-            let part = pick(&self.parts, u[0]);
-            let point = match &solids[part] {
-                Solid::Mesh { mesh, first } => {
-                    let id = pick(&self.triangles[part], u[1]);
-                    on_triangle(mesh, *first, id, u[2], u[3])
-                }
-                Solid::Exact(placed) => placed.sample([u[1], u[2], u[3]]),
-            };
-            if solids.len() == 1 || self.exposed(solids, part, &point) {
-                points.push(point);
-            }
-        }
-        (points, attempt)
+        let mut points = vec![];
+        let mut sampling = Sampling::new(self, solids, 4000, 0);
+        sampling.draw(u64::MAX, &mut points);
+        points.len() as f64 / sampling.attempt.max(1) as f64
     }
 
     /// Whether a point of a part, which holds `triangle` where that is a mesh, is inside another one.
@@ -103,6 +78,46 @@ impl Sampler {
             let facing = nearest.normal.dot(&sample.normal);
             facing > -0.999 && (facing < 0.999 || part < other)
         })
+    }
+}
+
+/// A draw of points that can be made in parts.
+pub struct Sampling<'a> {
+    sampler: &'a Sampler,
+    solids: &'a [Solid],
+    random: Stream,
+    attempt: u64,
+    most_attempts: u64,
+    missing: usize,
+}
+
+impl<'a> Sampling<'a> {
+    pub(super) fn new(sampler: &'a Sampler, solids: &'a [Solid], n: usize, seed: u64) -> Self {
+        let most_attempts = ATTEMPTS.saturating_mul(n as u64 + 10);
+        Sampling { sampler, solids, random: Stream::new(seed), attempt: 0, most_attempts, missing: n }
+    }
+
+    /// Appends the points of the next `attempts` attempts; whether there may be more to come.
+    pub fn draw(&mut self, attempts: u64, points: &mut Vec<SurfacePoint>) -> bool {
+        let (sampler, solids) = (self.sampler, self.solids);
+        let end = self.attempt.saturating_add(attempts).min(self.most_attempts);
+        while self.missing > 0 && self.attempt < end {
+            let u = [0, 1, 2, 3].map(|k| self.random.uniform(self.attempt * 4 + k));
+            self.attempt += 1;
+            let part = pick(&sampler.parts, u[0]);
+            let point = match &solids[part] {
+                Solid::Mesh { mesh, first } => {
+                    let id = pick(&sampler.triangles[part], u[1]);
+                    on_triangle(mesh, *first, id, u[2], u[3])
+                }
+                Solid::Exact(placed) => placed.sample([u[1], u[2], u[3]]),
+            };
+            if solids.len() == 1 || sampler.exposed(solids, part, &point) {
+                points.push(point);
+                self.missing -= 1;
+            }
+        }
+        self.missing > 0 && self.attempt < self.most_attempts
     }
 }
 
