@@ -1,6 +1,6 @@
 //! `ContactMonitor` and `ContactReport`.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard};
 
 use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
 use contactsense::robot::Robot;
@@ -8,7 +8,8 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arrays::{from_rows, Number, Readings, Vector};
+use crate::arguments::{pushing, robot, sole, Number};
+use crate::arrays::{from_rows, Readings, Vector};
 use crate::errors::to_python;
 use crate::isolator::{contact_count, contacts, names};
 use crate::observer::scalar_or_vector;
@@ -132,11 +133,17 @@ impl PyContactReport {
 /// keep after it, scalar or `(nv,)`, default 0.2; such a remainder becomes the bias up to two thresholds. `hold_time` [s], default 0.02: a signal stays on so
 /// long after it was last over its threshold. `max_contacts`, `pushing`, `locate_within`: as in `ContactIsolator`. Raises `InputError` that
 /// names the argument.
-#[pyclass(name = "ContactMonitor", module = "contactsense._core")]
+#[pyclass(frozen, name = "ContactMonitor", module = "contactsense._core")]
 pub struct PyContactMonitor {
     robot: Py<PyRobot>,
-    monitor: ContactMonitor,
+    monitor: Mutex<ContactMonitor>,
     sensors: Arc<[String]>,
+}
+
+impl PyContactMonitor {
+    fn sole(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, ContactMonitor>> {
+        sole(py, "ContactMonitor", &self.monitor)
+    }
 }
 
 #[pymethods]
@@ -147,24 +154,24 @@ impl PyContactMonitor {
                         max_contacts=None, pushing=true, locate_within=None))]
     #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
-        robot: &Bound<'_, PyRobot>,
-        dt: Number,
+        #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
+        dt: Number<'_, '_>,
         sensors: Option<&Bound<'_, PyAny>>,
         wanted_contacts: Option<&Bound<'_, PyAny>>,
         observer_gain: Option<&Bound<'_, PyAny>>,
         torque_threshold: Option<&Bound<'_, PyAny>>,
         wrench_threshold: Option<&Bound<'_, PyAny>>,
-        wrench_gain: Option<Number>,
-        bias_time_constant: Option<Number>,
-        bias_limit: Option<Number>,
-        bias_settle_time: Option<Number>,
+        wrench_gain: Option<Number<'_, '_>>,
+        bias_time_constant: Option<Number<'_, '_>>,
+        bias_limit: Option<Number<'_, '_>>,
+        bias_settle_time: Option<Number<'_, '_>>,
         hysteresis: Option<&Bound<'_, PyAny>>,
-        hold_time: Option<Number>,
+        hold_time: Option<Number<'_, '_>>,
         max_contacts: Option<&Bound<'_, PyAny>>,
-        pushing: bool,
-        locate_within: Option<Number>,
+        #[pyo3(from_py_with = pushing)] pushing: bool,
+        locate_within: Option<Number<'_, '_>>,
     ) -> PyResult<Self> {
-        let mut options = MonitorOptions::new(dt.0);
+        let mut options = MonitorOptions::new(dt.named("dt")?);
         if let Some(gain) = observer_gain {
             options.observer_gain = scalar_or_vector("observer_gain", gain)?;
         }
@@ -180,17 +187,19 @@ impl PyContactMonitor {
             options.isolation.locate_within = distance.named("locate_within")?;
         }
         if let Some(hold_time) = hold_time {
-            options.hold_time = hold_time.0;
+            options.hold_time = hold_time.named("hold_time")?;
         }
-        options.bias_time_constant = bias_time_constant.map(|number| number.0);
-        options.wrench_gain = wrench_gain.map(|number| number.0);
+        options.bias_time_constant =
+            bias_time_constant.map(|number| number.named("bias_time_constant")).transpose()?;
+        options.wrench_gain = wrench_gain.map(|number| number.named("wrench_gain")).transpose()?;
+        options.bias_settle_time =
+            bias_settle_time.map(|number| number.named("bias_settle_time")).transpose()?;
         if let Some(limit) = bias_limit {
-            options.bias_limit = limit.0;
+            options.bias_limit = limit.named("bias_limit")?;
         }
         if let Some(hysteresis) = hysteresis {
             options.hysteresis = scalar_or_vector("hysteresis", hysteresis)?;
         }
-        options.bias_settle_time = bias_settle_time.map(|number| number.0);
         if let Some(sensors) = sensors {
             options.isolation.sensors = self::sensors(sensors)?;
         }
@@ -199,7 +208,8 @@ impl PyContactMonitor {
         }
         let monitor = ContactMonitor::new(robot.get().0.clone(), &options);
         let monitor = monitor.map_err(|error| to_python(robot.py(), error))?;
-        Ok(Self { robot: robot.clone().unbind(), sensors: monitor.sensor_names().into(), monitor })
+        let sensors = monitor.sensor_names().into();
+        Ok(Self { robot: robot.unbind(), sensors, monitor: Mutex::new(monitor) })
     }
 
     /// One tick: `q` `(nq,)`, `v` `(nv,)`, `tau` and `friction` `(nv,)` or `(nv - 6,)` for a floating base.
@@ -212,29 +222,38 @@ impl PyContactMonitor {
     #[pyo3(signature = (q, v, tau, wrenches=None, *, dt=None, friction=None))]
     #[allow(clippy::too_many_arguments)] // the arguments of the Python method
     fn update(
-        &mut self,
+        &self,
         py: Python<'_>,
         q: &Bound<'_, PyAny>,
         v: &Bound<'_, PyAny>,
         tau: &Bound<'_, PyAny>,
         wrenches: Option<&Bound<'_, PyAny>>,
-        dt: Option<Number>,
+        dt: Option<Number<'_, '_>>,
         friction: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<PyContactReport> {
-        let dt = dt.map(|dt| dt.0);
+        let step = dt.and_then(|dt| (!dt.0.is_nan()).then_some(dt.0));
         let converted = (|| {
+            let dt = dt.map(|dt| dt.named("dt")).transpose()?;
             let (q, v, tau) = (Vector::new("q", q)?, Vector::new("v", v)?, Vector::new("tau", tau)?);
             let friction = Vector::optional("friction", friction)?;
-            Ok((q, v, tau, friction, wrenches.map(Readings::new).transpose()?))
+            Ok((q, v, tau, friction, wrenches.map(Readings::new).transpose()?, dt))
         })();
         // An array that cannot be read is a sample refused, too.
-        let (q, v, tau, friction, wrenches) = converted.inspect_err(|_: &PyErr| self.monitor.miss(dt))?;
+        let (q, v, tau, friction, wrenches, dt) = match converted {
+            Ok(converted) => converted,
+            Err(error) => {
+                let error: PyErr = error;
+                self.sole(py)?.miss(step);
+                return Err(error);
+            }
+        };
         let friction = friction.as_ref().map(|friction| friction.slice());
         let wrenches = wrenches.as_ref().map(|wrenches| wrenches.rows());
-        let done = self.monitor.update(q.slice(), v.slice(), tau.slice(), friction, wrenches, dt);
+        let mut monitor = self.sole(py)?;
+        let done = monitor.update(q.slice(), v.slice(), tau.slice(), friction, wrenches, dt);
         done.map_err(|error| to_python(py, error))?;
-        let report = self.monitor.report();
-        Ok(PyContactReport { robot: self.monitor.robot().clone(), sensors: self.sensors.clone(), report })
+        let report = monitor.report();
+        Ok(PyContactReport { robot: monitor.robot().clone(), sensors: self.sensors.clone(), report })
     }
 
     /// The robot that is monitored.
@@ -245,21 +264,23 @@ impl PyContactMonitor {
 
     /// Time between two calls that is assumed where `update` is given none [s].
     #[getter]
-    fn dt(&self) -> f64 {
-        self.monitor.dt()
+    fn dt(&self, py: Python<'_>) -> PyResult<f64> {
+        Ok(self.sole(py)?.dt())
     }
 
     /// The bias that is subtracted, `(nv,)` [Nm, N]; zeros without `bias_time_constant`.
     #[getter]
-    fn bias<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        match self.monitor.bias() {
+    fn bias<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let monitor = self.sole(py)?;
+        Ok(match monitor.bias() {
             Some(bias) => PyArray1::from_slice(py, bias),
-            None => PyArray1::zeros(py, self.monitor.robot().nv(), false),
-        }
+            None => PyArray1::zeros(py, monitor.robot().nv(), false),
+        })
     }
 
     /// Forgets all ticks, the bias too.
-    fn reset(&mut self) {
-        self.monitor.reset();
+    fn reset(&self, py: Python<'_>) -> PyResult<()> {
+        self.sole(py)?.reset();
+        Ok(())
     }
 }

@@ -1,6 +1,6 @@
 //! `ContactParticleFilter` and its `Particles`.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard};
 
 use contactsense::particle::{
     ContactParticleFilter, FilterOptions, Likelihood, Measurement, Motion, Schedule,
@@ -10,6 +10,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::arguments::sole;
 use crate::arrays::{from_rows, whole, Number, Vector};
 use crate::errors::{input, to_python};
 use crate::estimate::PyContactEstimate;
@@ -54,10 +55,16 @@ pub struct Particles {
 /// `schedule`: None (by what the data show), "paper", or a dict of some of "sharpness" (alpha, [1/Nm]), "point_noise" [m],
 /// "force_noise" and "stiffness_noise" (relative), each a number or a pair (first, last), and "updates", after which the
 /// last is reached. Raises `InputError` that names the argument, and `MemoryError` where the particles do not fit.
-#[pyclass(name = "ContactParticleFilter", module = "contactsense._core")]
+#[pyclass(frozen, name = "ContactParticleFilter", module = "contactsense._core")]
 pub struct PyContactParticleFilter {
-    filter: ContactParticleFilter,
+    filter: Mutex<ContactParticleFilter>,
     robot: Arc<Robot>,
+}
+
+impl PyContactParticleFilter {
+    fn sole(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, ContactParticleFilter>> {
+        sole(py, "ContactParticleFilter", &self.filter)
+    }
 }
 
 #[pymethods]
@@ -145,7 +152,7 @@ impl PyContactParticleFilter {
         let robot = robot.get().0.clone();
         let filter =
             ContactParticleFilter::new(robot.clone(), options).map_err(|error| to_python(py, error))?;
-        Ok(Self { filter, robot })
+        Ok(Self { filter: Mutex::new(filter), robot })
     }
 
     /// Takes in a configuration `q` `(nq,)` and the external torque `tau_ext` `(nv,)` measured there [Nm; N for sliding
@@ -156,7 +163,7 @@ impl PyContactParticleFilter {
     /// meanwhile. Raises `InputError` that names the argument; the filter is then unchanged.
     #[pyo3(signature = (q, tau_ext, *, time=None))]
     fn update(
-        &mut self,
+        &self,
         q: &Bound<'_, PyAny>,
         tau_ext: &Bound<'_, PyAny>,
         time: Option<Number>,
@@ -167,34 +174,37 @@ impl PyContactParticleFilter {
         if time.is_some_and(|time| !time.0.is_finite()) {
             return Err(input(py, "time: expected a finite number".into()));
         }
-        let filter = &mut self.filter;
+        let mut sole = self.sole(py)?;
+        let filter = &mut *sole;
         let estimate = py.detach(|| filter.update(&q, &tau_ext).cloned());
         let estimate = estimate.map_err(|error| to_python(py, error))?;
         let time = time.map_or(estimate.updates as f64, |time| time.0);
-        Ok(PyContactEstimate { links: self.filter.links().into(), robot: self.robot.clone(), estimate, time })
+        Ok(PyContactEstimate { links: sole.links().into(), robot: self.robot.clone(), estimate, time })
     }
 
     /// Forgets all updates.
-    fn reset(&mut self) {
-        self.filter.reset();
+    fn reset(&self, py: Python<'_>) -> PyResult<()> {
+        self.sole(py)?.reset();
+        Ok(())
     }
 
     /// The particles after the last update; a copy.
     #[getter]
     fn particles(&self, py: Python<'_>) -> PyResult<Particles> {
-        let columns = self.filter.particles();
+        let filter = self.sole(py)?;
+        let columns = filter.particles();
         let touchable = self.robot.touchable_links();
         let number = |link: u32| touchable.iter().position(|&l| l == link as usize).map_or(-1, |k| k as i64);
         let count = columns.len();
-        let points = (0..count).map(|k| self.filter.point(k).into());
-        let normals = (0..count).map(|k| self.filter.normal(k).into());
+        let points = (0..count).map(|k| filter.point(k).into());
+        let normals = (0..count).map(|k| filter.normal(k).into());
         Ok(Particles {
             link: PyArray1::from_iter(py, columns.link.iter().map(|&link| number(link))).unbind(),
             point: from_rows::<3>(py, points)?.unbind(),
             normal: from_rows::<3>(py, normals)?.unbind(),
             force: PyArray1::from_iter(py, columns.force.iter().map(|force| force.max(0.0))).unbind(),
             stiffness: PyArray1::from_slice(py, &columns.stiffness).unbind(),
-            weight: PyArray1::from_slice(py, self.filter.weights()).unbind(),
+            weight: PyArray1::from_slice(py, filter.weights()).unbind(),
         })
     }
 }
