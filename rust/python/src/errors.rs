@@ -30,14 +30,14 @@ fn classes(py: Python<'_>) -> PyResult<&Classes> {
                 py,
                 "ModelError",
                 "The robot's description (URDF or Pinocchio model) cannot be used; the message names the element.",
-                &[root.clone()],
+                std::slice::from_ref(&root),
             )?
             .unbind(),
             geometry: class(
                 py,
                 "GeometryError",
                 "A mesh or shape of the robot's surface cannot be used; the message names the link or file.",
-                &[root.clone()],
+                std::slice::from_ref(&root),
             )?
             .unbind(),
             input: class(
