@@ -10,10 +10,10 @@ use pyo3::types::PyString;
 pub use crate::arguments::{whole, Number};
 use crate::errors::{input, refused};
 
-/// Numbers that a vector argument holds without an allocation; more than the joints of most robots.
-const INLINE: usize = 64;
+/// Numbers that a vector argument holds without an allocation: an arm's. More would cost every call their initialisation.
+const INLINE: usize = 16;
 /// The same for rows of readings.
-const INLINE_ROWS: usize = 8;
+const INLINE_ROWS: usize = 4;
 
 /// A copy of an argument. Nothing that a later argument runs when it is read can change it or take its memory away.
 struct Copied<T, const N: usize> {

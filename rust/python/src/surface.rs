@@ -154,20 +154,22 @@ impl PySurface {
         }
         let mut found = Places::with_room(origins.len())?;
         let (mut rays, mut distances) = (vec![], vec![]);
-        let mut hits = Vec::with_capacity(64);
+        let (mut hits, mut all) = (Vec::with_capacity(64), vec![]);
         let mut index = 0;
         in_slices(py, origins.chunks(SLICE).zip(directions.chunks(SLICE)), |(origins, directions)| {
             for (origin, direction) in origins.iter().zip(directions) {
                 cast(surface, origin, direction, &mut hits);
                 reserve(&mut rays, hits.len())?;
-                reserve(&mut distances, hits.len())?;
-                found.reserve(hits.len())?;
-                for hit in &hits {
-                    rays.push(index);
-                    distances.push(hit.distance);
-                    found.push(&hit.point, &hit.normal, hit.triangle);
-                }
+                rays.resize(rays.len() + hits.len(), index);
+                reserve(&mut all, hits.len())?;
+                all.extend_from_slice(&hits);
                 index += 1;
+            }
+            reserve(&mut distances, all.len())?;
+            found.reserve(all.len())?;
+            for hit in all.drain(..) {
+                distances.push(hit.distance);
+                found.push(&hit.point, &hit.normal, hit.triangle);
             }
             Ok(())
         })?;
@@ -228,8 +230,8 @@ fn cast(surface: &Surface, origin: &[f64; 3], direction: &[f64; 3], hits: &mut V
 /// Points with their normals and triangles, as columns.
 #[derive(Default)]
 struct Places {
-    points: Vec<f64>,
-    normals: Vec<f64>,
+    points: Vec<[f64; 3]>,
+    normals: Vec<[f64; 3]>,
     triangles: Vec<i64>,
 }
 
@@ -243,21 +245,23 @@ impl Places {
     }
 
     fn reserve(&mut self, more: usize) -> PyResult<()> {
-        reserve(&mut self.points, 3 * more)?;
-        reserve(&mut self.normals, 3 * more)?;
+        reserve(&mut self.points, more)?;
+        reserve(&mut self.normals, more)?;
         reserve(&mut self.triangles, more)
     }
 
     fn push(&mut self, point: &Vector3<f64>, normal: &Vector3<f64>, triangle: i64) {
-        self.points.extend_from_slice(point.as_slice());
-        self.normals.extend_from_slice(normal.as_slice());
+        self.points.push([point.x, point.y, point.z]);
+        self.normals.push([normal.x, normal.y, normal.z]);
         self.triangles.push(triangle);
     }
 
     /// Without a copy.
     fn arrays(self, py: Python<'_>) -> PyResult<PlaceArrays> {
         let count = self.triangles.len();
-        let rows = |flat| PyResult::Ok(PyArray1::from_vec(py, flat).reshape([count, 3])?.unbind());
+        let rows = |rows: Vec<[f64; 3]>| {
+            PyResult::Ok(PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])?.unbind())
+        };
         Ok((rows(self.points)?, rows(self.normals)?, PyArray1::from_vec(py, self.triangles).unbind()))
     }
 }
