@@ -24,7 +24,8 @@ def picture_file(argument: str, path: str | os.PathLike[str]) -> Path:
     target = target if target.suffix else target.with_suffix(".png")
     kinds = FigureCanvasBase.get_supported_filetypes()
     if target.suffix[1:].lower() not in kinds:
-        raise InputError(f"{argument}: '{path}' must end in one of {', '.join(f'.{kind}' for kind in kinds)}")
+        known = ", ".join(f".{kind}" for kind in kinds)
+        raise InputError(f"{argument}: cannot write '{path}': it must end in one of {known}")
     if not target.parent.is_dir():
         raise InputError(f"{argument}: cannot write '{path}': there is no folder '{target.parent}'")
     if not os.access(target if target.exists() else target.parent, os.W_OK):
