@@ -1,4 +1,4 @@
-"""The bias learns nothing from contacts or wrong readings, and takes in only what hysteresis may have left."""
+"""The bias learns nothing from contacts or wrong readings, and only what hysteresis may have left."""
 
 from __future__ import annotations
 
