@@ -179,8 +179,8 @@ impl ContactMonitor {
         }
     }
 
-    /// Subtracts the bias, which follows the collision torque while nothing touches, over a step of `length` [s]; not where
-    /// that torque is `new` neither by the first sample nor by one after a gap. False during the bias's first estimate.
+    /// Subtracts the bias, which follows the collision torque while nothing touches, over a step of `length` [s]. `new`
+    /// is false where the step brought no new torque: the first, and one over a gap. False during the bias's first estimate.
     fn remove_bias(&mut self, length: f64, new: bool) -> bool {
         let Self { bias, sensing, detector, release, collision_torque, external_torque, .. } = self;
         self.remainder_learned = false;

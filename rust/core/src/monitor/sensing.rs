@@ -82,7 +82,9 @@ impl Sensing {
     ) {
         self.wrenches.update(observer.kinematics(), &self.tree, readings, step);
         self.tree.set_active(self.wrenches.usable());
-        self.find_blind(observer.robot(), threshold, step.length(dt));
+        // Over a gap the observer forgets nothing.
+        let forgetting = if step.is_gap() { 0.0 } else { step.length(dt) };
+        self.find_blind(observer.robot(), threshold, forgetting);
         self.exclude(observer.kinematics());
         for (sensor, trusted) in self.trusted.iter_mut().enumerate() {
             *trusted = if self.settled[sensor] {
