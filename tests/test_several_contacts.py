@@ -114,7 +114,7 @@ def test_three_contacts_that_share_joints_are_found_together() -> None:
         assert_found(isolation, pushes)
         located += sum(contact.located for contact in isolation.contacts)
         assert not any(c.located and c.point_std > 0.01 for c in isolation.contacts)
-    # Eighteen unknowns of three wrenches from few more torques: noise of the stated size moves many by centimetres.
+    # Eighteen unknowns from few more torques: noise of the stated size moves many points by centimetres.
     assert located > 10
 
 

@@ -264,6 +264,7 @@ impl PyContactIsolator {
     #[new]
     #[pyo3(signature = (robot, *, sensors=None, torque_threshold=None, wrench_threshold=None, wanted_contacts=None,
                         max_contacts=None, pushing=true, locate_within=None))]
+    #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
         #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
         sensors: Option<&Bound<'_, PyAny>>,
@@ -272,7 +273,7 @@ impl PyContactIsolator {
         wanted_contacts: Option<&Bound<'_, PyAny>>,
         max_contacts: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = pushing)] pushing: bool,
-        locate_within: Option<Number>,
+        locate_within: Option<Number<'_, '_>>,
     ) -> PyResult<Self> {
         let mut options =
             IsolatorOptions { max_contacts: contact_count(max_contacts)?, pushing, ..Default::default() };

@@ -22,6 +22,11 @@ impl Caster {
         Self { line: LineCast::new(), hits: Vec::with_capacity(HITS) }
     }
 
+    /// Whether hits of a line were lost since this was asked last.
+    pub fn take_overflow(&mut self) -> bool {
+        self.line.take_overflow()
+    }
+
     /// Where the line of action enters the body.
     pub fn hit_on(&mut self, scene: Scene, body: usize, wrench: &WrenchEstimate) -> Option<Entry> {
         let (start, direction) = wrench.line_of_action()?;

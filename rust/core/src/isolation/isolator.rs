@@ -112,7 +112,8 @@ impl ContactIsolator {
             return Err(Error::Input("max_contacts: must be at least 1".into()));
         }
         if !(options.locate_within > 0.0 && options.locate_within.is_finite()) {
-            let text = format!("locate_within: must be positive and finite [m], not {}", options.locate_within);
+            let text =
+                format!("locate_within: must be positive and finite [m], not {}", options.locate_within);
             return Err(Error::Input(text));
         }
         let tree = SensorTree::new(&robot, &options.sensors)?;
@@ -217,6 +218,8 @@ impl ContactIsolator {
                 .contacts
                 .sort_unstable_by_key(|contact| (std::cmp::Reverse(depth(contact.link)), contact.link));
         }
+        let overflow = [self.line.take_overflow(), self.several.caster.take_overflow()];
+        self.isolation.truncated |= overflow.contains(&true);
         self.isolation.residual = self.unexplained.iter().map(|x| x * x).sum::<f64>().sqrt();
         &self.isolation
     }

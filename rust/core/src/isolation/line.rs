@@ -6,18 +6,25 @@ use super::result::Candidate;
 use crate::robot::{Kinematics, Robot};
 use crate::surface::RayHit;
 
-/// Hits of one link that are kept; a line that meets a surface more often loses the rest.
+/// Hits of one link that are kept: the nearest.
 const HITS_PER_LINK: usize = 128;
 
 /// Workspace for casting a line.
 #[derive(Debug, Clone)]
 pub(super) struct LineCast {
     hits: Vec<RayHit>,
+    /// Whether a line since the last [`LineCast::take_overflow`] had more hits than were kept.
+    overflow: bool,
 }
 
 impl LineCast {
     pub fn new() -> Self {
-        Self { hits: Vec::with_capacity(HITS_PER_LINK) }
+        Self { hits: Vec::with_capacity(HITS_PER_LINK), overflow: false }
+    }
+
+    /// Whether hits were lost since this was asked last.
+    pub fn take_overflow(&mut self) -> bool {
+        std::mem::take(&mut self.overflow)
     }
 
     /// Appends all hits of the whole line with a link, up to the capacity of `candidates`.
@@ -46,9 +53,10 @@ impl LineCast {
         let before = (centre - origin).dot(&along) - 1.1 * radius;
         let from = origin + along * before;
         self.hits.clear();
-        surface.cast_line_into(&from, &along, f64::NEG_INFINITY, &mut self.hits);
+        self.overflow |= !surface.cast_line_into(&from, &along, f64::NEG_INFINITY, &mut self.hits);
         for hit in &self.hits {
             if candidates.len() == candidates.capacity() {
+                self.overflow = true;
                 return;
             }
             candidates.push(Candidate {

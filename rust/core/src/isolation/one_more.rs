@@ -43,7 +43,7 @@ impl Stacked {
                 column.iter_mut().zip(projected).for_each(|(x, p)| *x += axis * p);
             }
         }
-        for component in 0..COMPONENTS {
+        for (component, unprojected) in sizes.iter().enumerate() {
             let (done, open) = self.columns.split_at_mut(component * rest);
             let column = &mut open[..rest];
             for other in done.chunks_exact(rest) {
@@ -51,7 +51,7 @@ impl Stacked {
                 column.iter_mut().zip(other).for_each(|(x, a)| *x -= share * a);
             }
             let size = column.iter().map(|x| x * x).sum::<f64>().sqrt();
-            if size.is_nan() || size <= INDEPENDENT * sizes[component].sqrt() {
+            if size.is_nan() || size <= INDEPENDENT * unprojected.sqrt() {
                 return None;
             }
             column.iter_mut().for_each(|x| *x /= size);

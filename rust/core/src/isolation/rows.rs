@@ -108,7 +108,8 @@ impl TorqueRows {
     /// The largest share of a tolerance that its threshold is: tolerances that are narrower by this share are still no
     /// narrower than the thresholds.
     pub fn widest_threshold(&self, threshold: &[f64]) -> f64 {
-        let joints = threshold.iter().zip(&self.tolerance).map(|(threshold, tolerance)| threshold / tolerance);
+        let joints =
+            threshold.iter().zip(&self.tolerance).map(|(threshold, tolerance)| threshold / tolerance);
         let root = self.root.iter().flat_map(|root| root.threshold.iter().zip(&root.tolerance));
         joints.chain(root.map(|(threshold, tolerance)| threshold / tolerance)).fold(0.0, f64::max)
     }

@@ -124,7 +124,16 @@ impl WrenchEstimate {
             root.row_mut(i).unscale_mut(LEVER);
         }
         let (force, moment) = split(solution);
-        Self { force, moment: moment / LEVER, reference, rank, root, unexplained, redundant, deviation: DEVIATION }
+        Self {
+            force,
+            moment: moment / LEVER,
+            reference,
+            rank,
+            root,
+            unexplained,
+            redundant,
+            deviation: DEVIATION,
+        }
     }
 
     /// The point of the line of action nearest to `reference` (Vorndamme 2017, eq. 26), and its direction.
