@@ -83,7 +83,8 @@ fn what_another_part_covers_is_hidden() {
         |x: f64| Pose { rotation: nalgebra::Matrix3::identity(), translation: Vector3::new(x, 0.0, 0.0) };
     let cube = Geometry::Box { half_extents: [0.1; 3] };
     // Two that overlap by half, as a primitive and as a mesh, and one alone.
-    let mesh = block([-0.1, -0.1, -0.1], [0.1, 0.1, 0.1]);
+    let (vertices, triangles) = block([-0.1, -0.1, -0.1], [0.1, 0.1, 0.1]);
+    let mesh = Geometry::Mesh { vertices, triangles };
     let parts = vec![Part { geometry: cube.clone(), pose: at(0.0) }, Part { geometry: mesh, pose: at(0.1) }];
     let both = Surface::new(parts).unwrap().0;
     assert!(both.hides(&Vector3::new(0.1, 0.0, 0.01), -1), "on the box, inside the mesh");
