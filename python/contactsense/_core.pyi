@@ -385,11 +385,11 @@ class ContactEstimate:
     def ambiguous(self) -> bool: ...
     @property
     def explained(self) -> bool:
-        """Whether a single push explains the torques of the last updates; where not, `ambiguous` is True, too."""
+        """Whether a single push explains the torques of the last updates; otherwise `ambiguous` is True."""
 
     @property
     def residual(self) -> float:
-        """What the best push leaves over: root mean square over the joints, in standard deviations of the noise."""
+        """Root mean square over the joints of what the best push leaves over, in standard deviations."""
 
     @property
     def effective_samples(self) -> float: ...
