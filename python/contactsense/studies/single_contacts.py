@@ -57,10 +57,11 @@ def judge(
 ) -> tuple[str, float, float]:
     """Outcome of one touch, and the errors of point [m] and force (relative; NaN where not located).
 
-    "located"; "exact, line enters twice": the point is exact but not located, since the line of action enters
-    the robot's surface elsewhere, too, and a push there causes the same torques; "exact, uncertain": the same,
-    since noise as large as the thresholds say could move the point by centimetres; "not felt" by any joint;
-    the link alone is right, or another is named, because the wrench has "rank < 6" or the "own joint" of the touched link is "silent" (under its threshold). "WRONG": said to be
+    "located"; "exact, line enters twice": the point is exact but not located, since the line of action
+    enters the robot's surface elsewhere, too, and a push there causes the same torques; "exact, uncertain":
+    the same, since noise as large as the thresholds say could move the point by centimetres; "not felt" by
+    any joint; the link alone is right, or another is named, because the wrench has "rank < 6" or the "own
+    joint" of the touched link is "silent" (under its threshold). "WRONG": reported as
     located, but is not within the tolerance; "MISSED": determined, but not located.
     """
     jacobian = robot.jacobian(touch.q, touch.link, touch.point)
