@@ -213,7 +213,8 @@ impl PyIsolation {
         names(py, &self.robot, &self.isolation.link_candidates)
     }
 
-    /// Whether there were more contacts than `max_contacts`, or more hits of a line than are kept; the nearest are kept.
+    /// Whether there were more contacts than `max_contacts`, more hits of a line than are kept (the nearest are), or more
+    /// explanations to try than the bounded work of a call allows.
     #[getter]
     fn truncated(&self) -> bool {
         self.isolation.truncated

@@ -103,7 +103,8 @@ impl PyContactReport {
         contacts(py, &self.robot, &self.sensors, &self.report.isolation)
     }
 
-    /// Whether there were more contacts than `max_contacts`, or more hits of a line than are kept; the nearest are kept.
+    /// Whether there were more contacts than `max_contacts`, more hits of a line than are kept (the nearest are), or more
+    /// explanations to try than the bounded work of a call allows.
     #[getter]
     fn truncated(&self) -> bool {
         self.report.isolation.truncated

@@ -219,7 +219,7 @@ impl ContactIsolator {
                 .sort_unstable_by_key(|contact| (std::cmp::Reverse(depth(contact.link)), contact.link));
         }
         let overflow = [self.line.take_overflow(), self.several.caster.take_overflow()];
-        self.isolation.truncated |= overflow.contains(&true);
+        self.isolation.truncated |= overflow.contains(&true) || self.several.work.was_refused();
         self.isolation.residual = self.unexplained.iter().map(|x| x * x).sum::<f64>().sqrt();
         &self.isolation
     }

@@ -81,7 +81,8 @@ pub struct Isolation {
     pub residual: f64,
     /// Links that may carry a contact, likeliest first.
     pub link_candidates: Vec<usize>,
-    /// Whether there were more contacts than `max_contacts`, or more hits of a line than are kept: the nearest are.
+    /// Whether there were more contacts than `max_contacts`, more hits of a line than are kept (the nearest are), or more
+    /// explanations to try than the bounded work of a call allows.
     pub truncated: bool,
 }
 

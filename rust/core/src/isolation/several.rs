@@ -289,7 +289,7 @@ impl SeveralContacts {
             return;
         }
         let pairs = pairs.min(self.work.left() / PLACES_WORK);
-        if pairs < FEWEST_PAIRS || !self.work.spend(pairs * PLACES_WORK) {
+        if !self.work.spend(pairs.max(FEWEST_PAIRS) * PLACES_WORK) {
             return;
         }
         self.search.search(scene, pair, pairs);

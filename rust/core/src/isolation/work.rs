@@ -8,16 +8,22 @@ const MOST: usize = 500_000;
 #[derive(Debug, Clone)]
 pub(super) struct Work {
     left: usize,
+    refused: bool,
 }
 
 impl Work {
     pub fn new() -> Self {
-        Self { left: MOST }
+        Self { left: MOST, refused: false }
     }
 
     /// Starts a call.
     pub fn reset(&mut self) {
-        self.left = MOST;
+        *self = Self::new();
+    }
+
+    /// Whether something was left undone for want of it.
+    pub fn was_refused(&self) -> bool {
+        self.refused
     }
 
     pub fn left(&self) -> usize {
@@ -31,6 +37,7 @@ impl Work {
         if enough {
             self.left -= multiplications;
         }
+        self.refused |= !enough;
         enough
     }
 }
