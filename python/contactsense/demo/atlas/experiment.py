@@ -30,6 +30,8 @@ DT = 0.001  # [s]
 # Before the run the robot settles on its soles; the monitor watches the last part, in which it starts up [s].
 _SETTLING, _WATCHED = 1.0, 0.2
 _PROGRESS_TICKS = 50
+# The chest is 0.6 m wide, and thresholds are six standard deviations of the torques or more.
+LOCATE_WITHIN = 0.1  # [m]
 
 
 def run_experiment(
@@ -65,6 +67,7 @@ def run_experiment(
         observer_gain=settings.observer_gain,
         torque_threshold=settings.torque_threshold,
         wrench_threshold=settings.wrench_threshold,
+        locate_within=LOCATE_WITHIN,
     )
     atlas.reset(q)
     for tick in range(round(_SETTLING / DT)):
