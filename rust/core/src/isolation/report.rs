@@ -50,7 +50,7 @@ impl ContactIsolator {
         // Several forces share the redundant torques: what is not sharp may as well be the others' doing.
         for contact in &mut self.isolation.contacts[first..] {
             contact.located &= contact.point_std < SHARP;
-            contact.verified = verified;
+            contact.verified &= verified;
         }
         // Tolerances are wider than the thresholds; what contradicts those is not located.
         if self.several.contradicted || self.unexplained_share() > CONTRADICTION {
@@ -97,6 +97,7 @@ impl ContactIsolator {
         let mut contact = contact_at(&robot, kinematics, hit, &found.force, point_std);
         contact.candidates = candidates..self.isolation.candidates.len();
         contact.located = determined && self.pushing && self.is_near_enough(point_std);
+        contact.verified = determined && wrench.is_redundant();
         self.isolation.contacts.push(contact);
         self.isolation.link_candidates.push(hit.link);
     }
