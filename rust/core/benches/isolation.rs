@@ -38,5 +38,34 @@ fn single_contact(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, single_contact);
+/// A threshold of three standard deviations of the noise, which decides how many explanations are tried.
+fn noisy_torques(c: &mut Criterion) {
+    const NOISE: f64 = 0.1; // [Nm]
+    const KINDS: [(&str, f64, f64); 3] =
+        [("one contact", 1.0, NOISE), ("a weak one", 0.1, NOISE), ("none", 0.0, 30.0)];
+    const DRAWS: usize = 64;
+    let mut group = c.benchmark_group("isolation, noisy torques");
+    let robots: [(&str, Arc<Robot>); 2] =
+        [("arm, 7 joints", common::arm()), ("humanoid, nv 30", common::humanoid())];
+    for (name, robot) in robots {
+        let q = common::configuration(&robot, 0.4);
+        let tau_ext = push(&robot, &q);
+        for (kind, share, noise) in KINDS {
+            let pushed: Vec<f64> = tau_ext.iter().map(|torque| share * torque).collect();
+            let drawn: Vec<_> = (0..DRAWS).map(|k| common::noisy(&pushed, noise, k as f64)).collect();
+            let options = IsolatorOptions { torque_threshold: vec![3.0 * NOISE], ..Default::default() };
+            let mut isolator = ContactIsolator::new(robot.clone(), &options).expect("valid settings");
+            let mut next = 0;
+            group.bench_function(format!("{name}, {kind}"), |b| {
+                b.iter(|| {
+                    next = (next + 1) % DRAWS;
+                    black_box(isolator.isolate(&q, &drawn[next]).expect("valid input")).residual
+                })
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, single_contact, noisy_torques);
 criterion_main!(benches);

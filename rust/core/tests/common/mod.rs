@@ -227,3 +227,9 @@ fn swing(robot: &Robot, start: &[f64], update: usize, amplitude: f64) -> Vec<f64
     }
     q
 }
+
+/// Torques with reproducible noise of about this standard deviation [Nm].
+pub fn noisy(torque: &[f64], deviation: f64, phase: f64) -> Vec<f64> {
+    let noise = |k: usize| deviation * 2.0_f64.sqrt() * (12.9898 * (k as f64 + 1.0) * (phase + 1.0)).sin();
+    torque.iter().enumerate().map(|(k, torque)| torque + noise(k)).collect()
+}
