@@ -7,8 +7,9 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 
 use crate::arguments::{robot, sole};
-use crate::arrays::{from_rows, Readings, Vector};
+use crate::arrays::{Readings, Vector};
 use crate::errors::to_python;
+use crate::returned::from_rows;
 use crate::robot::PyRobot;
 use crate::sensor::sensors;
 

@@ -8,7 +8,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::from_rows;
+use crate::returned::from_rows;
 
 /// A place where the contact may be.
 #[pyclass(frozen, name = "Mode", module = "contactsense._core")]

@@ -10,8 +10,8 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arguments::{pushing, robot, sole, whole};
-use crate::arrays::{Number, Readings, Vector};
+use crate::arguments::{pushing, robot, sole, whole, Number};
+use crate::arrays::{Readings, Vector};
 use crate::errors::to_python;
 use crate::observer::scalar_or_vector;
 use crate::robot::PyRobot;

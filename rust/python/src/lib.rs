@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 
 mod arguments;
 mod arrays;
+mod columns;
 mod compensator;
 mod description;
 mod errors;
@@ -14,6 +15,7 @@ mod isolator;
 mod monitor;
 mod observer;
 mod particle;
+mod returned;
 mod robot;
 mod sensor;
 mod surface;

@@ -9,10 +9,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::arguments::{pushing, robot, sole, Number};
-use crate::arrays::{from_rows, Readings, Vector};
+use crate::arrays::{Readings, Vector};
 use crate::errors::to_python;
 use crate::isolator::{contact_count, contacts, names};
 use crate::observer::scalar_or_vector;
+use crate::returned::from_rows;
 use crate::robot::PyRobot;
 use crate::sensor::{sensor_names, sensors, wrench_thresholds};
 

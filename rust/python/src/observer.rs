@@ -15,7 +15,7 @@ use crate::robot::PyRobot;
 pub fn scalar_or_vector(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     match number_if_any(object)? {
         Some(number) => Ok(vec![number]),
-        None => Ok(Vector::new(name, object)?.slice().to_vec()),
+        None => Ok(Vector::new(name, object)?.into_vec()),
     }
 }
 

@@ -10,11 +10,12 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arguments::sole;
-use crate::arrays::{from_rows, whole, Number, Vector};
+use crate::arguments::{number_if_any, robot, sole, whole, Number};
+use crate::arrays::Vector;
 use crate::errors::{input, to_python};
 use crate::estimate::PyContactEstimate;
 use crate::observer::scalar_or_vector;
+use crate::returned::from_rows;
 use crate::robot::PyRobot;
 use crate::sensor::names;
 
@@ -78,7 +79,7 @@ impl PyContactParticleFilter {
             likelihood='gaussian', torque_noise=None, relative_noise=None, torque_threshold=None)")]
     #[allow(clippy::too_many_arguments)] // named in Python
     fn new(
-        robot: &Bound<'_, PyRobot>,
+        #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
         particles: Option<&Bound<'_, PyAny>>,
         motion: Choice,
         measurement: Choice,
@@ -169,8 +170,8 @@ impl PyContactParticleFilter {
         time: Option<Number>,
     ) -> PyResult<PyContactEstimate> {
         let py = q.py();
-        let q = Vector::new("q", q)?.slice().to_vec();
-        let tau_ext = Vector::new("tau_ext", tau_ext)?.slice().to_vec();
+        let q = Vector::new("q", q)?.into_vec();
+        let tau_ext = Vector::new("tau_ext", tau_ext)?.into_vec();
         if time.is_some_and(|time| !time.0.is_finite()) {
             return Err(input(py, "time: expected a finite number".into()));
         }
@@ -288,9 +289,9 @@ fn read_schedule(py: Python<'_>, object: Option<&Bound<'_, PyAny>>) -> PyResult<
             }
         };
         let name = format!("schedule: {key}");
-        *pair = match value.extract::<f64>() {
-            Ok(both) => [both, both],
-            Err(_) => Vector::new(&name, &value)?.fixed::<2>(py, &name)?,
+        *pair = match number_if_any(&value)? {
+            Some(both) => [both, both],
+            None => Vector::new(&name, &value)?.fixed::<2>(py, &name)?,
         };
     }
     Ok(schedule)

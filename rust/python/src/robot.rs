@@ -8,9 +8,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::arguments::text;
-use crate::arrays::{matrix, pose, Vector};
+use crate::arrays::Vector;
 use crate::description::description;
 use crate::errors::{detached, input, to_python};
+use crate::returned::{matrix, pose};
 use crate::surface::PySurface;
 
 /// A robot: immutable, shareable between threads.

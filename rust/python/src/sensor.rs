@@ -7,9 +7,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyString;
 
 use crate::arguments::{number_if_any, shown, text};
-use crate::arrays::{pose, rows};
+use crate::arrays::rows;
 use crate::description::placement;
 use crate::errors::{input, refused};
+use crate::returned::pose;
 
 const LAST_ROW: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
 

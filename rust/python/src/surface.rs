@@ -9,8 +9,10 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
 use crate::arguments::whole;
-use crate::arrays::{from_rows, reserve, rows};
+use crate::arrays::rows;
+use crate::columns::Columns;
 use crate::errors::{detached, input, to_python};
+use crate::returned::{from_rows, reserve};
 use contactsense::Error;
 
 /// Samples of one call at most: they fit into memory.
@@ -18,6 +20,10 @@ const MOST_SAMPLES: u64 = 100_000_000;
 
 /// Queries between two looks at signals: milliseconds of work.
 const SLICE: usize = 4096;
+/// Hits that are collected before they become columns: they stay in the processor's nearest cache.
+const BLOCK: usize = 256;
+/// Hits of one ray that have room at first: more than a ray has of any robot's link.
+const RAY_HITS: usize = 64;
 
 /// One link's surface, in the link frame.
 #[pyclass(frozen, name = "Surface", module = "contactsense._core")]
@@ -107,14 +113,16 @@ impl PySurface {
     fn closest_points(&self, py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<ClosestPoints> {
         let surface = self.core(py)?;
         let points = rows::<3>("points", points)?;
-        let mut found = Places::with_room(points.len())?;
+        let mut found = Columns::with_room(points.len())?;
         let mut distances = vec![];
         reserve(&mut distances, points.len())?;
+        let mut hits = Vec::with_capacity(points.len().min(BLOCK));
         in_slices(py, points.chunks(SLICE), |slice| {
-            for point in slice {
-                let hit = surface.closest_point(&Vector3::from(*point));
-                found.push(&hit.point, &hit.normal, hit.triangle);
-                distances.push(hit.distance);
+            for block in slice.chunks(BLOCK) {
+                hits.clear();
+                hits.extend(block.iter().map(|point| surface.closest_point(&Vector3::from(*point))));
+                distances.extend(hits.iter().map(|hit| hit.distance));
+                found.extend(&hits, |hit| (&hit.point, &hit.normal, hit.triangle))?;
             }
             Ok(())
         })?;
@@ -152,27 +160,32 @@ impl PySurface {
         if let Some(row) = directions.iter().position(|d| Vector3::from(*d).amax() < f64::MIN_POSITIVE) {
             return Err(input(py, format!("directions: row {row} is zero")));
         }
-        let mut found = Places::with_room(origins.len())?;
+        // A closed part is entered and left.
+        let room = 2 * origins.len();
+        let mut found = Columns::with_room(room)?;
         let (mut rays, mut distances) = (vec![], vec![]);
-        let (mut hits, mut all) = (Vec::with_capacity(64), vec![]);
+        reserve(&mut rays, room)?;
+        reserve(&mut distances, room)?;
+        let mut hits = Vec::with_capacity(BLOCK + RAY_HITS);
         let mut index = 0;
         in_slices(py, origins.chunks(SLICE).zip(directions.chunks(SLICE)), |(origins, directions)| {
-            for (origin, direction) in origins.iter().zip(directions) {
-                cast(surface, origin, direction, &mut hits);
-                reserve(&mut rays, hits.len())?;
-                rays.resize(rays.len() + hits.len(), index);
-                reserve(&mut all, hits.len())?;
-                all.extend_from_slice(&hits);
+            for (row, (origin, direction)) in origins.iter().zip(directions).enumerate() {
+                let before = hits.len();
+                cast(surface, origin, direction, &mut hits)?;
+                reserve(&mut rays, hits.len() - before)?;
+                rays.resize(rays.len() + hits.len() - before, index);
                 index += 1;
-            }
-            reserve(&mut distances, all.len())?;
-            found.reserve(all.len())?;
-            for hit in all.drain(..) {
-                distances.push(hit.distance);
-                found.push(&hit.point, &hit.normal, hit.triangle);
+                if hits.len() >= BLOCK || row + 1 == origins.len() {
+                    reserve(&mut distances, hits.len())?;
+                    distances.extend(hits.iter().map(|hit| hit.distance));
+                    found.extend(&hits, |hit| (&hit.point, &hit.normal, hit.triangle))?;
+                    hits.clear();
+                }
             }
             Ok(())
         })?;
+        rays.shrink_to_fit();
+        distances.shrink_to_fit();
         let (point, normal, triangle) = found.arrays(py)?;
         Ok(RayHits {
             ray: PyArray1::from_vec(py, rays).unbind(),
@@ -197,15 +210,15 @@ impl PySurface {
         let n = whole("n", n, MOST_SAMPLES)? as usize;
         let seed = seed.map_or(Ok(0), |seed| whole("seed", seed, u64::MAX))?;
         let mut sampling = self.core(py)?.sampling(n, seed);
-        let mut found = Places::with_room(n)?;
+        let mut found = Columns::with_room(n)?;
         let mut drawn = Vec::with_capacity(n.min(SLICE));
         let mut more = true;
         while more {
             more = detached(py, || {
+                drawn.clear();
                 let more = sampling.draw(SLICE as u64, &mut drawn);
-                drawn.drain(..).for_each(|hit| found.push(&hit.point, &hit.normal, hit.triangle));
-                more
-            })?;
+                found.extend(&drawn, |hit| (&hit.point, &hit.normal, hit.triangle)).map(|()| more)
+            })??;
             if more {
                 py.check_signals()?;
             }
@@ -215,55 +228,17 @@ impl PySurface {
     }
 }
 
-/// Every hit of one ray.
-fn cast(surface: &Surface, origin: &[f64; 3], direction: &[f64; 3], hits: &mut Vec<RayHit>) {
+/// Appends every hit of one ray.
+fn cast(surface: &Surface, origin: &[f64; 3], direction: &[f64; 3], hits: &mut Vec<RayHit>) -> PyResult<()> {
     // Scaled first, so that no square overflows.
     let direction = Vector3::from(*direction);
     let direction = (direction / direction.amax()).normalize();
-    hits.clear();
+    let before = hits.len();
     while !surface.cast_line_into(&Vector3::from(*origin), &direction, 0.0, hits) {
-        hits.clear();
-        hits.reserve(2 * hits.capacity());
+        hits.truncate(before);
+        reserve(hits, 2 * hits.capacity())?;
     }
-}
-
-/// Points with their normals and triangles, as columns.
-#[derive(Default)]
-struct Places {
-    points: Vec<[f64; 3]>,
-    normals: Vec<[f64; 3]>,
-    triangles: Vec<i64>,
-}
-
-type PlaceArrays = (Py<PyArray2<f64>>, Py<PyArray2<f64>>, Py<PyArray1<i64>>);
-
-impl Places {
-    fn with_room(count: usize) -> PyResult<Self> {
-        let mut places = Self::default();
-        places.reserve(count)?;
-        Ok(places)
-    }
-
-    fn reserve(&mut self, more: usize) -> PyResult<()> {
-        reserve(&mut self.points, more)?;
-        reserve(&mut self.normals, more)?;
-        reserve(&mut self.triangles, more)
-    }
-
-    fn push(&mut self, point: &Vector3<f64>, normal: &Vector3<f64>, triangle: i64) {
-        self.points.push([point.x, point.y, point.z]);
-        self.normals.push([normal.x, normal.y, normal.z]);
-        self.triangles.push(triangle);
-    }
-
-    /// Without a copy.
-    fn arrays(self, py: Python<'_>) -> PyResult<PlaceArrays> {
-        let count = self.triangles.len();
-        let rows = |rows: Vec<[f64; 3]>| {
-            PyResult::Ok(PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])?.unbind())
-        };
-        Ok((rows(self.points)?, rows(self.normals)?, PyArray1::from_vec(py, self.triangles).unbind()))
-    }
+    Ok(())
 }
 
 /// Works slice by slice while other Python threads run; between slices Ctrl-C interrupts.

@@ -1,0 +1,40 @@
+//! Arrays that are returned, and memory for them.
+
+use nalgebra::DMatrix;
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::exceptions::PyMemoryError;
+use pyo3::prelude::*;
+
+/// Room for `more` entries, or a `MemoryError`.
+pub fn reserve<T>(vector: &mut Vec<T>, more: usize) -> PyResult<()> {
+    let bytes = more.saturating_mul(size_of::<T>());
+    let full = |_| PyMemoryError::new_err(format!("there is no memory for {bytes} more bytes"));
+    // As `Vec::reserve` grows, so that repeated calls take linear time; exact where that is too much.
+    vector.try_reserve(more).or_else(|_| vector.try_reserve_exact(more)).map_err(full)
+}
+
+/// A fresh `(rows, columns)` array.
+pub fn matrix<'py>(py: Python<'py>, matrix: &DMatrix<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let row_major: Vec<f64> = matrix.transpose().as_slice().to_vec();
+    PyArray1::from_vec(py, row_major).reshape([matrix.nrows(), matrix.ncols()])
+}
+
+/// A fresh `(n, N)` array.
+pub fn from_rows<const N: usize>(
+    py: Python<'_>,
+    rows: impl ExactSizeIterator<Item = [f64; N]>,
+) -> PyResult<Bound<'_, PyArray2<f64>>> {
+    let count = rows.len();
+    // Flattened iterators do not know their length.
+    let mut flat = vec![];
+    reserve(&mut flat, count * N)?;
+    rows.for_each(|row| flat.extend_from_slice(&row));
+    PyArray1::from_vec(py, flat).reshape([count, N])
+}
+
+/// A fresh `(4, 4)` array of a pose.
+pub fn pose<'py>(py: Python<'py>, pose: &contactsense::spatial::Pose) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let (r, t) = (&pose.rotation, &pose.translation);
+    let row = |i: usize| [r[(i, 0)], r[(i, 1)], r[(i, 2)], t[i]];
+    from_rows(py, [row(0), row(1), row(2), [0.0, 0.0, 0.0, 1.0]].into_iter())
+}
