@@ -2,8 +2,7 @@
 //! them nor take their memory away.
 
 use contactsense::robot::LARGEST;
-use numpy::ndarray::Dimension;
-use numpy::{PyArray, PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
@@ -54,77 +53,77 @@ impl Vector {
 }
 
 /// Sensor readings `(n, 6)`; NaN, for no reading, is let through.
-pub struct Readings(Vec<f64>);
+pub struct Readings(Vec<[f64; 6]>);
 
 impl Readings {
     pub fn new(object: &Bound<'_, PyAny>) -> PyResult<Self> {
         let wrong = || input(object.py(), "wrenches: expected an array of shape (n_sensors, 6)".into());
         let mut copied = None;
         if let Ok(array) = object.cast::<PyArray2<f64>>() {
-            copied = copy_rows(array, 6)?;
+            copied = copy_rows(array)?;
         }
         if copied.is_none() {
             let converted = convert("wrenches", object)?;
-            copied = copy_rows(converted.cast().map_err(|_| wrong())?, 6)?;
+            copied = copy_rows(converted.cast().map_err(|_| wrong())?)?;
         }
         copied.map(Self).ok_or_else(wrong)
     }
 
     pub fn rows(&self) -> &[[f64; 6]] {
-        self.0.as_chunks().0
+        &self.0
     }
 }
 
-/// The numbers of an array; `None` where they are strided, or unaligned as a field of a packed record is.
-fn copy<D: Dimension>(array: &Bound<'_, PyArray<f64, D>>) -> PyResult<Option<Vec<f64>>> {
-    if !array.is_c_contiguous() {
-        return Ok(None);
-    }
+/// The numbers of a vector; `None` where they are strided, or unaligned as a field of a packed record is.
+fn copy(array: &Bound<'_, PyArray1<f64>>) -> PyResult<Option<Vec<f64>>> {
     if array.len() <= SHORT {
         // No look at NumPy's table of borrows, which takes longer than the copy.
         return Ok(array.to_vec().ok());
     }
     let Ok(view) = array.try_readonly() else { return Ok(None) };
-    let Ok(slice) = view.as_slice() else { return Ok(None) };
+    view.as_slice().ok().map(own).transpose()
+}
+
+/// The same of rows of `N` numbers.
+fn copy_rows<const N: usize>(array: &Bound<'_, PyArray2<f64>>) -> PyResult<Option<Vec<[f64; N]>>> {
+    let Ok(view) = array.try_readonly() else { return Ok(None) };
+    match view.as_slice() {
+        Ok(slice) if view.is_c_contiguous() && view.shape()[1] == N => own(slice.as_chunks().0).map(Some),
+        _ => Ok(None),
+    }
+}
+
+fn own<T: Copy>(slice: &[T]) -> PyResult<Vec<T>> {
     let mut copied = vec![];
     reserve(&mut copied, slice.len())?;
     copied.extend_from_slice(slice);
-    Ok(Some(copied))
-}
-
-fn copy_rows(array: &Bound<'_, PyArray2<f64>>, columns: usize) -> PyResult<Option<Vec<f64>>> {
-    if array.shape()[1] == columns {
-        copy(array)
-    } else {
-        Ok(None)
-    }
+    Ok(copied)
 }
 
 /// Rows of `N` numbers of a size that can be computed with; a single row may be given flat.
 pub fn rows<const N: usize>(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<[f64; N]>> {
     let py = object.py();
     let wrong = || input(py, format!("{name}: expected an array of shape (n, {N})"));
-    let converted = convert(name, object)?;
-    let mut rows: Vec<[f64; N]> = vec![];
-    if let Ok(array) = converted.cast::<PyArray2<f64>>() {
-        let view = array.try_readonly().map_err(|_| wrong())?;
-        if view.shape()[1] != N {
-            return Err(wrong());
-        }
-        let slice = view.as_slice().map_err(|_| wrong())?;
-        reserve(&mut rows, slice.len() / N)?;
-        rows.extend_from_slice(slice.as_chunks().0);
-    } else if let Ok(array) = converted.cast::<PyArray1<f64>>() {
-        let view = array.try_readonly().map_err(|_| wrong())?;
-        let slice = view.as_slice().map_err(|_| wrong())?;
-        rows.push(<[f64; N]>::try_from(slice).map_err(|_| wrong())?);
-    } else {
-        return Err(wrong());
+    let mut copied = None;
+    if let Ok(array) = object.cast::<PyArray2<f64>>() {
+        copied = copy_rows(array)?;
     }
-    match rows.iter().position(|row| !row.iter().all(|x| x.abs() < LARGEST)) {
-        Some(row) => Err(input(py, format!("{name}: row {row} must be finite and below {LARGEST:e}"))),
-        None => Ok(rows),
+    if copied.is_none() {
+        let converted = convert(name, object)?;
+        copied = if let Ok(array) = converted.cast::<PyArray1<f64>>() {
+            copy(array)?.and_then(|row| Some(vec![<[f64; N]>::try_from(row).ok()?]))
+        } else {
+            copy_rows(converted.cast().map_err(|_| wrong())?)?
+        };
     }
+    let rows = copied.ok_or_else(wrong)?;
+    let computable = |x: &f64| x.abs() < LARGEST;
+    // Without a branch a number, which makes it several times faster.
+    if rows.as_flattened().iter().fold(true, |all, x| all & computable(x)) {
+        return Ok(rows);
+    }
+    let row = rows.iter().position(|row| !row.iter().all(computable)).unwrap_or(0);
+    Err(input(py, format!("{name}: row {row} must be finite and below {LARGEST:e}")))
 }
 
 /// Any real array-like as a fresh or given contiguous float64 array.

@@ -45,12 +45,9 @@ impl Columns {
     /// Without a copy.
     pub fn arrays(self, py: Python<'_>) -> PyResult<Arrays> {
         let count = self.triangles.len();
-        let rows = |mut rows: Vec<[f64; 3]>| {
-            rows.shrink_to_fit();
+        let rows = |rows: Vec<[f64; 3]>| {
             PyResult::Ok(PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])?.unbind())
         };
-        let mut triangles = self.triangles;
-        triangles.shrink_to_fit();
-        Ok((rows(self.points)?, rows(self.normals)?, PyArray1::from_vec(py, triangles).unbind()))
+        Ok((rows(self.points)?, rows(self.normals)?, PyArray1::from_vec(py, self.triangles).unbind()))
     }
 }

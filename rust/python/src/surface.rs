@@ -160,32 +160,28 @@ impl PySurface {
         if let Some(row) = directions.iter().position(|d| Vector3::from(*d).amax() < f64::MIN_POSITIVE) {
             return Err(input(py, format!("directions: row {row} is zero")));
         }
-        // A closed part is entered and left.
-        let room = 2 * origins.len();
-        let mut found = Columns::with_room(room)?;
-        let (mut rays, mut distances) = (vec![], vec![]);
-        reserve(&mut rays, room)?;
-        reserve(&mut distances, room)?;
-        let mut hits = Vec::with_capacity(BLOCK + RAY_HITS);
+        let (mut rays, mut hits) = (vec![], vec![]);
+        // Of most links all hits have room here; where they have not, or there is no memory for so many, room is made below.
+        let _ = hits.try_reserve(4 * origins.len());
         let mut index = 0;
         in_slices(py, origins.chunks(SLICE).zip(directions.chunks(SLICE)), |(origins, directions)| {
-            for (row, (origin, direction)) in origins.iter().zip(directions).enumerate() {
+            for (origin, direction) in origins.iter().zip(directions) {
                 let before = hits.len();
+                reserve(&mut hits, RAY_HITS)?;
                 cast(surface, origin, direction, &mut hits)?;
-                reserve(&mut rays, hits.len() - before)?;
-                rays.resize(rays.len() + hits.len() - before, index);
-                index += 1;
-                if hits.len() >= BLOCK || row + 1 == origins.len() {
-                    reserve(&mut distances, hits.len())?;
-                    distances.extend(hits.iter().map(|hit| hit.distance));
-                    found.extend(&hits, |hit| (&hit.point, &hit.normal, hit.triangle))?;
-                    hits.clear();
+                if hits.len() > before {
+                    reserve(&mut rays, hits.len() - before)?;
+                    rays.resize(rays.len() + hits.len() - before, index);
                 }
+                index += 1;
             }
             Ok(())
         })?;
-        rays.shrink_to_fit();
-        distances.shrink_to_fit();
+        let mut found = Columns::with_room(hits.len())?;
+        let mut distances = vec![];
+        reserve(&mut distances, hits.len())?;
+        distances.extend(hits.iter().map(|hit| hit.distance));
+        found.extend(&hits, |hit| (&hit.point, &hit.normal, hit.triangle))?;
         let (point, normal, triangle) = found.arrays(py)?;
         Ok(RayHits {
             ray: PyArray1::from_vec(py, rays).unbind(),
