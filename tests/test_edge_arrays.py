@@ -142,6 +142,30 @@ def test_readings_in_column_order_are_read_by_rows(robot):
     )
 
 
-def test_more_joints_than_are_copied_in_place():
-    with pytest.raises(cs.InputError, match=r"q: .*7"):
-        cs.Robot.named("iiwa14").mass_matrix(np.zeros(100))
+@pytest.mark.parametrize("count", [100, 5000])
+def test_more_numbers_than_joints_are_counted(robot, count):
+    with pytest.raises(cs.InputError, match=rf"q: .*7.*{count}"):
+        robot.mass_matrix(np.zeros(count))
+
+
+def test_rows_may_have_any_layout(robot):
+    surface = robot.surface(robot.link_names[-1])
+    rows = np.arange(12.0).reshape(4, 3)
+    packed = np.zeros(4, dtype=[("flag", "u1"), ("row", "f8", 3)])
+    packed["row"] = rows
+    expected = surface.closest_points(rows).points
+    for given in (
+        np.asfortranarray(rows),
+        np.repeat(rows, 2, axis=0)[::2],
+        packed["row"],
+        rows.astype(int),
+        rows.tolist(),
+    ):
+        np.testing.assert_array_equal(surface.closest_points(given).points, expected)
+    np.testing.assert_array_equal(surface.closest_points(rows[1]).points, expected[1:2])
+    for wrong in (rows.T, rows[0, :2], rows[None], 1.0):
+        with pytest.raises(cs.InputError, match=r"points: expected an array of shape \(n, 3\)"):
+            surface.closest_points(wrong)
+    rows[2, 1] = np.nan
+    with pytest.raises(cs.InputError, match="points: row 2 must be finite"):
+        surface.closest_points(rows)

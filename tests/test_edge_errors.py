@@ -55,6 +55,7 @@ WRONG = {
     "robot: expected a": lambda r: cs.ContactMonitor(None, dt=1e-3),
     "robot: expected": lambda r: cs.ContactIsolator(5),
     "robot: ": lambda r: cs.LoadCompensator(5, []),
+    "robot: expected a contactsense.Robot, got": lambda r: cs.ContactParticleFilter("iiwa14"),
     "link: expected a string, got 5": lambda r: r.link_pose(np.zeros(7), 5),
     "link: expected a string, got None": lambda r: r.jacobian(np.zeros(7), None),
     "link: expected a string": lambda r: r.surface(b"hand"),

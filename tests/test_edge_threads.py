@@ -178,7 +178,7 @@ MEMORY = """
         ("surface.sample(100_000_000)", 200_000_000),
         ("surface.closest_points(rows)", 60_000_000),
         ("surface.closest_points(rows)", 20_000_000),
-        ("surface.cast_rays(rows, rows)", 130_000_000),
+        ("surface.cast_rays(rows, -rows)", 200_000_000),
         ("surface.cast_rays(rows, rows)", 60_000_000),
         ("robot.mass_matrix(np.broadcast_to(np.float64(0.0), 100_000_000))", 200_000_000),
     ],

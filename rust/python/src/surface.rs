@@ -161,7 +161,7 @@ impl PySurface {
             return Err(input(py, format!("directions: row {row} is zero")));
         }
         let (mut rays, mut hits) = (vec![], vec![]);
-        // Of most links all hits have room here; where they have not, or there is no memory for so many, room is made below.
+        // All hits of most links fit; where they do not, or there is no such room, it is made below.
         let _ = hits.try_reserve(4 * origins.len());
         let mut index = 0;
         in_slices(py, origins.chunks(SLICE).zip(directions.chunks(SLICE)), |(origins, directions)| {
