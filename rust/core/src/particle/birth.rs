@@ -107,7 +107,6 @@ impl Births {
         particles.cross_variance[k] = 0.0;
         particles.stiffness_variance[k] = self.stiffness_variance * stiffness * stiffness;
         particles.log_weight[k] = 0.0;
-        particles.drift[k] = 1.0;
         particles.spread[k] = self.spacing;
         particles.fresh[k] = true;
     }

@@ -88,9 +88,6 @@ columns! {
     measured: f64 = 0.0,
     /// What the freedom of its friction costs in log-likelihood.
     penalty: f64 = 0.0,
-    /// Squared difference of the force found from the one predicted, over its variance, averaged over the last updates of
-    /// the particle and its ancestors: one where the obstacle explains how the force changes.
-    drift: f64 = 1.0,
     /// How far the particle is to be moved along the surface at random, a standard deviation; zero once it was [m].
     spread: f64 = 0.0,
     /// Drawn anew from the whole surface, not copied: never weighed yet.

@@ -52,8 +52,6 @@ pub struct Mode {
     pub stiffness: f64,
     /// Share of the particles' weight.
     pub probability: f64,
-    /// How much the force changes otherwise than the obstacle predicts: its mean squared error over its variance.
-    pub drift: f64,
     /// Root of the mean squared distance of the mode's particles from their mean [m].
     pub spread: f64,
 }

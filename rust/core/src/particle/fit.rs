@@ -125,10 +125,15 @@ pub(super) struct Push<'a> {
 }
 
 impl Push<'_> {
+    /// Squared norm of the torques of a unit force along the inward normal, and their product with those measured, each
+    /// joint over its noise.
+    pub fn response(&self) -> (f64, f64) {
+        self.frames.links[self.link].response(&self.point, &self.normal)
+    }
+
     /// Takes from the torques what the best force of this push does, which does not pull.
     fn subtract(&self, torque: &mut [f64]) {
-        let frame = &self.frames.links[self.link];
-        let (gain, product) = frame.response(&self.point, &self.normal);
+        let (gain, product) = self.response();
         if !(gain > 0.0 && product > 0.0) {
             return;
         }

@@ -3,18 +3,12 @@
 use super::columns::{Columns, Slice};
 use super::options::Likelihood;
 
-/// Share of the newest update in a particle's drift, and what one update can show at most.
-const DRIFT_SHARE: f64 = 0.1;
-const MOST_DRIFT: f64 = 100.0;
-
 /// What a step of weighing needs to know.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Weighing {
     pub likelihood: Likelihood,
     /// Variance of the torques' error, in units of their noise.
     pub variance: f64,
-    /// The same, as far as it is noise: not widened, so that particles keep a say.
-    pub noise: f64,
     pub stiffness_range: [f64; 2],
 }
 
@@ -47,7 +41,6 @@ impl Weighing {
             };
             let posterior = self.posterior(&belief);
             particles.log_weight[k] += posterior.log_weight - belief.penalty;
-            particles.drift[k] += DRIFT_SHARE * (self.drift(&belief) - particles.drift[k]);
             let change = posterior.force - belief.force;
             // Also where the contact has ended, of which the variance and the stiffness learn nothing.
             particles.force[k] = posterior.force;
@@ -94,17 +87,6 @@ impl Weighing {
         Posterior { force: found, log_weight: -0.5 * (squared - explained - left.ln()), left }
     }
 
-    /// Squared difference of the force that explains the torques from the predicted one, over its variance.
-    #[inline]
-    fn drift(&self, belief: &Belief) -> f64 {
-        let Belief { force, variance, gain, product, .. } = *belief;
-        if gain <= 0.0 {
-            return 1.0;
-        }
-        let apart = product / gain - force.max(0.0);
-        (apart * apart / (variance + self.noise / gain)).min(MOST_DRIFT)
-    }
-
     /// The paper's (Bimbo 2019, eq. 5), of the predicted force.
     #[inline]
     fn exponential(&self, belief: &Belief) -> Posterior {
@@ -149,12 +131,8 @@ mod tests {
 
     #[test]
     fn a_contact_that_has_just_ended_has_no_force() {
-        let weighing = Weighing {
-            likelihood: Likelihood::Gaussian,
-            variance: 1.0,
-            noise: 1.0,
-            stiffness_range: [3e2, 3e4],
-        };
+        let weighing =
+            Weighing { likelihood: Likelihood::Gaussian, variance: 1.0, stiffness_range: [3e2, 3e4] };
         let mut particles = Columns::new(1).expect("memory for one");
         // Pushed with 5 N before; now a torque of the opposite sign, ten times the noise.
         (particles.force[0], particles.force_variance[0]) = (5.0, 1.0);

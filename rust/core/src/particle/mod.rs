@@ -6,11 +6,13 @@
 
 mod adaptation;
 mod birth;
+mod check;
 mod columns;
 mod estimate;
 mod filter;
 mod fit;
 mod frames;
+mod left_over;
 mod likelihood;
 mod measurement;
 mod memory;
@@ -21,6 +23,7 @@ mod parallel;
 mod rejuvenation;
 mod resampling;
 mod schedule;
+mod spring;
 mod stages;
 mod swarm;
 

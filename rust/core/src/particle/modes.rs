@@ -40,7 +40,6 @@ pub(super) struct Moments {
     normal: Vector3<f64>,
     force: f64,
     stiffness: f64,
-    drift: f64,
 }
 
 impl Moments {
@@ -53,7 +52,6 @@ impl Moments {
         self.normal += particles.normal[k] * weight;
         self.force += weight * particles.force[k].max(0.0);
         self.stiffness += weight * particles.stiffness[k];
-        self.drift += weight * particles.drift[k];
     }
 
     fn join(&mut self, other: &Moments) {
@@ -63,7 +61,6 @@ impl Moments {
         self.normal += other.normal;
         self.force += other.force;
         self.stiffness += other.stiffness;
-        self.drift += other.drift;
     }
 
     /// Root of the mean squared distance from the mean [m].
@@ -277,7 +274,6 @@ impl Modes {
             normal,
             stiffness: moments.stiffness / moments.weight,
             probability: moments.weight,
-            drift: moments.drift / moments.weight,
             spread,
         }
     }

@@ -5,11 +5,13 @@ use std::sync::Arc;
 
 use super::adaptation::Adaptation;
 use super::birth::{Births, PLACE};
+use super::check::Check;
 use super::columns::{Columns, Slice};
 use super::estimate::{ContactEstimate, Event};
 use super::fit::{Fit, Push};
 use super::frames::Frames;
-use super::likelihood::{misfit, Belief, Weighing};
+use super::left_over::{turning, LeftOver};
+use super::likelihood::{Belief, Weighing};
 use super::measurement::Measuring;
 use super::memory::{filled, space};
 use super::modes::{Modes, MOST_MODES};
@@ -21,7 +23,7 @@ use super::resampling::{effective_share, normalise, systematic};
 use super::schedule::Noise;
 use crate::error::Result;
 use crate::random::Stream;
-use crate::robot::{JointKind, Robot};
+use crate::robot::Robot;
 
 /// A contact ends below this share of the thresholds at which it begins.
 const RELEASE: f64 = 1.0 / 3.0;
@@ -56,7 +58,7 @@ pub(super) struct Swarm {
     pub weights: Vec<f64>,
     parents: Vec<u32>,
     modes: Modes,
-    fit: Fit,
+    check: Check,
     pub estimate: ContactEstimate,
     random: Stream,
     adaptation: Adaptation,
@@ -79,7 +81,7 @@ impl Swarm {
         drop(space::<[u8; PARTICLE]>(count)?);
         let torque_noise = FilterOptions::per_joint("torque_noise", &options.torque_noise, nv)?;
         Ok(Self {
-            fit: Fit::new(torque_noise.clone(), options.relative_noise),
+            check: Check::new(Fit::new(torque_noise.clone(), options.relative_noise), softest(&options)),
             torque_noise,
             threshold: FilterOptions::per_joint("torque_threshold", &options.torque_threshold, nv)?,
             torque: vec![0.0; nv],
@@ -181,7 +183,7 @@ impl Swarm {
     }
 
     /// Says what the weighted particles show.
-    pub fn conclude(&mut self, event: Event, effective: f64, moved: f64) -> Left {
+    pub fn conclude(&mut self, event: Event, effective: f64, moved: f64) -> LeftOver {
         self.modes.find(&self.robot, &self.frames, &self.particles, &self.weights);
         let left = self.left_over();
         self.adaptation.learn(left.misfit, self.active_joints());
@@ -254,7 +256,6 @@ impl Swarm {
         let mut weighing = Weighing {
             likelihood: self.options.likelihood,
             variance: 1.0,
-            noise: self.adaptation.noise(),
             stiffness_range: self.options.stiffness_range,
         };
         if let Some(sharpness) = noise.sharpness {
@@ -300,38 +301,13 @@ impl Swarm {
     }
 
     /// What the best particle leaves over.
-    fn left_over(&self) -> Left {
-        let (mut best, mut greatest) = (0, -1.0);
-        for (k, &weight) in self.weights.iter().enumerate() {
-            if weight > greatest {
-                (best, greatest) = (k, weight);
-            }
-        }
-        let measured = self.frames.measured;
-        let misfit = misfit(&Belief::of(&self.particles, best));
-        let share = if measured > 0.0 { (misfit / measured).sqrt() } else { 0.0 };
-        Left { best, misfit, share, joints: self.torque.len() }
+    fn left_over(&self) -> LeftOver {
+        LeftOver::of(&self.particles, &self.weights, self.frames.measured, self.torque.len())
     }
 
-    /// Moment at the turning joints per standard deviation of its noise, where the torque is [Nm].
-    fn moment_per_deviation(&self) -> f64 {
-        let (mut moment, mut deviations) = (0.0, 0.0);
-        for ((torque, noise), _) in
-            self.torque.iter().zip(&self.noise).zip(&self.turning).filter(|(_, turns)| **turns)
-        {
-            moment += torque * torque;
-            deviations += (torque / noise).powi(2);
-        }
-        if deviations > 0.0 {
-            (moment / deviations).sqrt()
-        } else {
-            0.0
-        }
-    }
-
-    fn tell(&mut self, event: Event, effective: f64, moved: f64, left: &Left) {
-        let error = left.misfit.sqrt() * self.moment_per_deviation() * self.adaptation.averaged();
-        let Self { estimate, modes, frames, fit, robot, particles, options, torque, .. } = self;
+    fn tell(&mut self, event: Event, effective: f64, moved: f64, left: &LeftOver) {
+        let error = left.moment(&self.torque, &self.noise, &self.turning) * self.adaptation.averaged();
+        let Self { estimate, modes, frames, check, robot, particles, options, torque, .. } = self;
         let sure = (estimate.contact && !estimate.ambiguous)
             .then(|| (estimate.point, MOVED_ON + 3.0 * estimate.covariance.trace().sqrt()));
         estimate.clear();
@@ -345,7 +321,7 @@ impl Swarm {
             }
         }
         if estimate.event != Event::Continued {
-            fit.restart();
+            check.restart();
         }
         let Some(link) = estimate.link else { return };
         let pose = &frames.links[link].pose;
@@ -361,16 +337,10 @@ impl Swarm {
         let best = (particles.point[left.best], particles.normal[left.best]);
         let near = particles.link[left.best] as usize == link && (best.0 - told.point).norm() < MOVED_ON;
         let other = near.then_some(Push { point: best.0, normal: best.1, ..told });
-        estimate.residual = fit.take_in(&told, other.as_ref(), torque);
-        let [softest, stiffest] = options.stiffness_range;
-        let least = softest * (stiffest / softest).powf(SOFT);
-        let obstacle =
-            estimate.modes.first().is_none_or(|mode| mode.drift <= MOST_DRIFT && mode.stiffness >= least);
-        // Without a spring and a belief of it nothing is predicted.
-        let predicted = springy && options.likelihood == Likelihood::Gaussian;
-        estimate.explained = fit.explained() && (obstacle || !predicted);
-        // What is not explained is never sure.
-        estimate.ambiguous |= !estimate.explained;
+        estimate.residual = check.take_in(&told, other.as_ref(), torque, moved);
+        estimate.explained = check.explained();
+        // What is not explained is never sure, nor what has not been confirmed yet.
+        estimate.ambiguous |= !check.trusted();
     }
 
     /// Draws particles anew, a share of them from the whole surface: those behind the others, whose number is returned.
@@ -418,46 +388,12 @@ impl Swarm {
     }
 }
 
-/// Whether each velocity variable is a rotation's.
-fn turning(robot: &Robot) -> Vec<bool> {
-    let mut turning = vec![false; robot.nv()];
-    for body in 0..robot.bodies.len() {
-        let range = robot.velocity_range(body);
-        // A free flyer's linear part comes first.
-        let first = match robot.bodies[body].kind {
-            JointKind::Prismatic => range.end,
-            JointKind::FreeFlyer => range.start + 3,
-            JointKind::Revolute | JointKind::Continuous => range.start,
-        };
-        turning[first..range.end].fill(true);
-    }
-    turning
+/// The softest obstacle, where one is assumed whose force is believed to follow the link's motion.
+fn softest(options: &FilterOptions) -> Option<f64> {
+    let predicted = options.motion == Motion::Curvature && options.likelihood == Likelihood::Gaussian;
+    predicted.then_some(options.stiffness_range[0])
 }
 
-/// Torque that is left over.
-pub(super) struct Left {
-    /// The best particle.
-    best: usize,
-    /// Its squared norm in units of the noise.
-    pub misfit: f64,
-    /// Its part of what was measured.
-    pub share: f64,
-    joints: usize,
-}
-
-impl Left {
-    /// Whether it is more than a share of the torque, and more than noise.
-    fn is_much(&self, share: f64) -> bool {
-        self.share > share && self.misfit > 9.0 * self.joints as f64
-    }
-}
-
-/// Mean squared error of predicted forces over their variance that an obstacle of the kind sought has at most: that of
-/// noise three times as large as stated.
-const MOST_DRIFT: f64 = 2.0;
-/// A stiffness in this first part of its range, by its logarithm, is that of no obstacle: what pulls, carries or turns a
-/// link keeps its force while the link moves, and ends at the range's soft end.
-const SOFT: f64 = 0.15;
 /// Above this share of the torque that the best particle leaves over, the contact is looked for on the whole surface, by a share of the particles.
 const RESCUE: f64 = 0.2;
 const RESCUERS: f64 = 0.5;
