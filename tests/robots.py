@@ -152,9 +152,14 @@ def meshes() -> tuple[cs.Robot, pin.Model]:
 
 def panda() -> tuple[cs.Robot, pin.Model]:
     """Franka's arm with convex links, fingers and all."""
+    return example_arm("panda")
+
+
+def example_arm(name: str) -> tuple[cs.Robot, pin.Model]:
+    """An arm of example-robot-data; skips the test where it is not installed."""
     from contactsense import sim
 
-    file = BY_NAME["panda"]
+    file = BY_NAME[name].require()
     return file.robot(), sim.model_from_urdf(file.path)
 
 

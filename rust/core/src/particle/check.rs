@@ -1,6 +1,7 @@
 //! Whether a single push on an obstacle that stays explains what was measured, and for how long it has.
 
-use super::fit::{Fit, Push};
+use super::fit::{Fit, Push, FITTED};
+use super::options::{FilterOptions, Likelihood, Motion};
 use super::schedule::NEW_POSE;
 use super::spring::{Place, Spring};
 
@@ -8,9 +9,16 @@ use super::spring::{Place, Spring};
 const CONFIRMED: f64 = 3.0;
 /// A stiffness is not in its range where even so many standard errors more are softer (99 %).
 const EXCLUDED: f64 = 2.326;
-/// Updates for which both tests must have held before they are trusted: what is no push holds them by chance only, in
-/// one motion of a few updates and not in the next, a push holds them for ever.
+/// With no torque to spare, the point can be chosen so that the force follows the softest obstacle in the range, whatever
+/// the truth: then the stiffness is confirmed only from so many times the softest on.
+const CLEARLY_STIFFER: f64 = 2.0;
+/// A slope below so many standard errors takes a confirmation back: less than what gives one, so that a push whose
+/// motions tell little for a while is not doubted.
+const DOUBTED: f64 = 1.0;
+/// Updates for which both tests must have held before they are trusted, with torques to spare and without: what is no
+/// push holds them by chance only, in one motion and not in the next; a push holds them for ever.
 const HOLD: u32 = 5;
+const HOLD_WITHOUT_SPARE: u32 = 10;
 
 /// Tests over the last updates.
 #[derive(Debug, Clone)]
@@ -20,13 +28,23 @@ pub(super) struct Check {
     /// Least stiffness of an obstacle [N/m]; none where no obstacle is assumed, which needs no motion then.
     softest: Option<f64>,
     explained: bool,
-    /// Updates for which the tests have held, up to `HOLD`.
+    /// Updates for which the tests have held, and are to hold.
     held: u32,
+    hold: u32,
 }
 
 impl Check {
-    pub fn new(fit: Fit, softest: Option<f64>) -> Self {
-        Check { fit, spring: Spring::default(), softest, explained: true, held: 0 }
+    pub fn new(options: &FilterOptions, torque_noise: Vec<f64>) -> Self {
+        // Only where an obstacle is assumed and its force is believed to follow the motion.
+        let springy = options.motion == Motion::Curvature && options.likelihood == Likelihood::Gaussian;
+        Check {
+            fit: Fit::new(torque_noise, options.relative_noise),
+            spring: Spring::default(),
+            softest: springy.then_some(options.stiffness_range[0]),
+            explained: true,
+            held: 0,
+            hold: HOLD,
+        }
     }
 
     /// Forgets all updates: another contact is looked at.
@@ -47,7 +65,7 @@ impl Check {
         };
         self.explained = self.fit.explained() && !contradicted;
         match confirmed {
-            Some(true) if self.explained => self.held = (self.held + 1).min(HOLD),
+            Some(true) if self.explained => self.held = self.held.saturating_add(1),
             // A motion that tells little confirms nothing, and takes nothing back.
             None if self.explained => {}
             _ => self.held = 0,
@@ -68,8 +86,11 @@ impl Check {
         }
         let Some(slope) = self.spring.slope() else { return (false, None) };
         let contradicted = slope.value + EXCLUDED * slope.error < softest;
-        let confirmed = slope.value >= CONFIRMED * slope.error;
-        (contradicted, (confirmed || slope.value < 0.0).then_some(confirmed))
+        let spare = told.frames.links[link].joints() > FITTED;
+        self.hold = if spare { HOLD } else { HOLD_WITHOUT_SPARE };
+        let least = if spare { 0.0 } else { CLEARLY_STIFFER * softest };
+        let confirmed = slope.value >= (CONFIRMED * slope.error).max(least);
+        (contradicted, (confirmed || slope.value < (DOUBTED * slope.error).max(least)).then_some(confirmed))
     }
 
     /// Whether a single push explains the last updates.
@@ -79,6 +100,6 @@ impl Check {
 
     /// Whether it has been confirmed for long enough to be trusted.
     pub fn trusted(&self) -> bool {
-        self.held >= HOLD
+        self.held >= self.hold
     }
 }

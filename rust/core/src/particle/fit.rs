@@ -17,7 +17,7 @@ const WINDOW: f64 = 10.0;
 const GRANTED: f64 = 3.0;
 const GRANTED_UPDATES: f64 = 1.0;
 /// Parameters of a push: its force and two coordinates on the surface.
-const FITTED: usize = 3;
+pub(super) const FITTED: usize = 3;
 /// Quantile of the normal distribution up to which the mean residual is explained (99 %).
 const LEVEL: f64 = 2.326;
 

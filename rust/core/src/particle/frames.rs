@@ -65,6 +65,11 @@ impl Frame {
 }
 
 impl Frame {
+    /// How many velocity variables move the link.
+    pub fn joints(&self) -> usize {
+        self.screws.len()
+    }
+
     /// How far a point of the link moved at most since the step before [m].
     pub fn displacement(&self) -> f64 {
         let centre = self.pose.transform_point(&self.center) - self.before.transform_point(&self.center);

@@ -260,7 +260,11 @@ impl Modes {
         let mut point = densest;
         let mut normal = moments.normal / moments.weight;
         if let Some(surface) = robot.links()[link].surface.as_ref() {
-            let near = surface.closest_point(&densest);
+            let mut near = surface.closest_point(&densest);
+            if surface.hides(&near.point, near.triangle) {
+                // Nothing touches the link there. From outside, the nearest point of all is never hidden.
+                near = surface.closest_point(&(densest + normal.normalize() * (spread + CELL)));
+            }
             point = near.point;
             if normal.norm() < 0.7 {
                 normal = near.normal; // the mode goes around an edge or the link

@@ -50,8 +50,7 @@ impl Move {
             let number = (start + k) as u64;
             match self.motion {
                 Motion::Curvature => self.roll(surface, frames, number, particles, k),
-                // The contact moves with the link (the first baseline).
-                Motion::FixedOnLink => particles.force_variance[k] += self.loose_force.powi(2),
+                Motion::FixedOnLink => self.stay_on_link(surface, number, particles, k),
                 Motion::FixedInWorld => self.stay_in_world(surface, frames, number, particles, k),
             }
             if particles.fresh[k] {
@@ -137,7 +136,14 @@ impl Move {
         let near =
             surface.closest_point_near(&frame.pose.inverse_transform_point(&fixed), particles.triangle[k]);
         place(particles, k, &near, near.normal);
-        if (number + self.step).is_multiple_of(REFRESH) && surface.hides(&near.point, near.triangle) {
+        self.stay_on_link(surface, number, particles, k);
+    }
+
+    /// The contact moves with the link (the first baseline).
+    fn stay_on_link(&self, surface: &Surface, number: u64, particles: &mut Slice<'_>, k: usize) {
+        let seen = (number + self.step).is_multiple_of(REFRESH);
+        // Copies that were moved apart may have come below another part.
+        if seen && surface.hides(&particles.point[k], particles.triangle[k]) {
             particles.log_weight[k] = f64::NEG_INFINITY;
         }
         particles.force_variance[k] += self.loose_force.powi(2);

@@ -93,9 +93,9 @@ impl Spring {
         self.square = kept * kept * self.square + weight * weight;
         let newest = weight / self.weight;
         let apart = [self.outward - self.mean[0], force - self.mean[1]];
-        for k in 0..2 {
-            self.mean[k] += newest * apart[k];
-            self.variance[k] = (1.0 - newest) * (self.variance[k] + newest * apart[k] * apart[k]);
+        for ((mean, variance), apart) in self.mean.iter_mut().zip(&mut self.variance).zip(&apart) {
+            *mean += newest * apart;
+            *variance = (1.0 - newest) * (*variance + newest * apart * apart);
         }
         self.covariance = (1.0 - newest) * (self.covariance + newest * apart[0] * apart[1]);
         self.noise += newest * (noise - self.noise);

@@ -8,7 +8,7 @@ use super::birth::{Births, PLACE};
 use super::check::Check;
 use super::columns::{Columns, Slice};
 use super::estimate::{ContactEstimate, Event};
-use super::fit::{Fit, Push};
+use super::fit::Push;
 use super::frames::Frames;
 use super::left_over::{turning, LeftOver};
 use super::likelihood::{Belief, Weighing};
@@ -18,12 +18,13 @@ use super::modes::{Modes, MOST_MODES};
 use super::motion::Move;
 use super::options::{FilterOptions, Likelihood, Motion};
 use super::parallel;
-use super::rejuvenation::Rejuvenation;
-use super::resampling::{effective_share, normalise, systematic};
+use super::resampling::{effective_share, normalise};
 use super::schedule::Noise;
 use crate::error::Result;
 use crate::random::Stream;
 use crate::robot::Robot;
+
+mod renewal;
 
 /// A contact ends below this share of the thresholds at which it begins.
 const RELEASE: f64 = 1.0 / 3.0;
@@ -81,7 +82,7 @@ impl Swarm {
         drop(space::<[u8; PARTICLE]>(count)?);
         let torque_noise = FilterOptions::per_joint("torque_noise", &options.torque_noise, nv)?;
         Ok(Self {
-            check: Check::new(Fit::new(torque_noise.clone(), options.relative_noise), softest(&options)),
+            check: Check::new(&options, torque_noise.clone()),
             torque_noise,
             threshold: FilterOptions::per_joint("torque_threshold", &options.torque_threshold, nv)?,
             torque: vec![0.0; nv],
@@ -167,19 +168,6 @@ impl Swarm {
         if effective < RESAMPLE * self.particles.len() as f64 {
             self.resample(&noise, moved, Adaptation::fresh_share(left.share));
         }
-    }
-
-    /// Nothing explains the torque, as after a jump of the contact: looks for it on the whole surface at once, beside what
-    /// was known. Returns how many particles are effective then, and what happened.
-    fn rescue(&mut self, noise: &Noise, moved: f64, event: Event) -> (f64, Event) {
-        let count = self.particles.len();
-        let kept = self.resample(noise, moved, RESCUERS);
-        self.frames.stand();
-        self.adaptation.begin();
-        self.predict(&Noise::none());
-        let effective = self.weigh(0.0, &Noise::none());
-        let found: f64 = self.weights[kept..count].iter().sum();
-        (effective, if found > 0.5 { Event::Changed } else { event })
     }
 
     /// Says what the weighted particles show.
@@ -342,64 +330,11 @@ impl Swarm {
         // What is not explained is never sure, nor what has not been confirmed yet.
         estimate.ambiguous |= !check.trusted();
     }
-
-    /// Draws particles anew, a share of them from the whole surface: those behind the others, whose number is returned.
-    pub fn resample(&mut self, noise: &Noise, moved: f64, fresh_share: f64) -> usize {
-        let count = self.particles.len();
-        let anew = ((fresh_share * count as f64) as usize).min(count - 1);
-        let kept = count - anew;
-        let offset = self.stream().uniform(0);
-        systematic(&self.weights, offset, &mut self.parents[..kept]);
-        self.parents[kept..].fill(0);
-        self.spare.gather(&self.particles, &self.parents);
-        std::mem::swap(&mut self.particles, &mut self.spare);
-        let apart = noise.point.unwrap_or_else(|| {
-            // A contact that is held to be fixed is not: it moves about as much as the robot does.
-            let slip = if self.options.motion == Motion::Curvature { 0.0 } else { SLIP * moved };
-            self.adaptation.apart(self.modes.spread).max(slip)
-        });
-        for k in 0..kept {
-            let copy = k > 0 && self.parents[k] == self.parents[k - 1];
-            self.particles.spread[k] = if copy || noise.point.is_some() { apart } else { 0.0 };
-            self.particles.log_weight[k] = 0.0;
-        }
-        let random = self.stream();
-        for k in kept..count {
-            self.births.anywhere(&self.frames, &random, &mut self.particles, k);
-        }
-        self.weights.fill(1.0 / count as f64);
-        self.rejuvenate();
-        kept
-    }
-
-    fn rejuvenate(&mut self) {
-        let apart = Rejuvenation {
-            motion: self.options.motion,
-            measuring: self.measuring(),
-            keep_torque: self.options.likelihood == Likelihood::Gaussian,
-            stiffness_range: self.options.stiffness_range,
-            most_force: self.options.force_range[1],
-            random: self.stream(),
-        };
-        let threads = self.threads();
-        let Self { robot, frames, particles, .. } = self;
-        let work = |start: usize, mut slice: Slice<'_>| apart.apply(robot, frames, start, &mut slice);
-        parallel::for_each(particles.slice(), 0, threads, &work);
-    }
 }
 
-/// The softest obstacle, where one is assumed whose force is believed to follow the link's motion.
-fn softest(options: &FilterOptions) -> Option<f64> {
-    let predicted = options.motion == Motion::Curvature && options.likelihood == Likelihood::Gaussian;
-    predicted.then_some(options.stiffness_range[0])
-}
-
-/// Above this share of the torque that the best particle leaves over, the contact is looked for on the whole surface, by a share of the particles.
+/// Above this share of the torque that the best particle leaves over, the contact is looked for on the whole surface.
 const RESCUE: f64 = 0.2;
-const RESCUERS: f64 = 0.5;
 /// Updates from one such search to the next: it costs as much as an update.
 const PAUSE: u64 = 3;
 /// A point that was sure and is farther off now, beyond its spread and the robot's motion, is another contact [m].
 const MOVED_ON: f64 = 0.05;
-/// Share of the robot's motion that a contact held to be fixed moves.
-const SLIP: f64 = 0.5;

@@ -1,0 +1,74 @@
+//! Drawing particles anew, by their weights and from the whole surface.
+
+use super::Swarm;
+use crate::particle::columns::Slice;
+use crate::particle::estimate::Event;
+use crate::particle::options::{Likelihood, Motion};
+use crate::particle::parallel;
+use crate::particle::rejuvenation::Rejuvenation;
+use crate::particle::resampling::systematic;
+use crate::particle::schedule::Noise;
+
+/// Share of the particles that look for a contact on the whole surface, where nothing explains the torque.
+const RESCUERS: f64 = 0.5;
+/// Share of the robot's motion that a contact held to be fixed moves.
+const SLIP: f64 = 0.5;
+
+impl Swarm {
+    /// Nothing explains the torque, as after a jump of the contact: looks for it on the whole surface at once, beside what
+    /// was known. Returns how many particles are effective then, and what happened.
+    pub(super) fn rescue(&mut self, noise: &Noise, moved: f64, event: Event) -> (f64, Event) {
+        let count = self.particles.len();
+        let kept = self.resample(noise, moved, RESCUERS);
+        self.frames.stand();
+        self.adaptation.begin();
+        self.predict(&Noise::none());
+        let effective = self.weigh(0.0, &Noise::none());
+        let found: f64 = self.weights[kept..count].iter().sum();
+        (effective, if found > 0.5 { Event::Changed } else { event })
+    }
+
+    /// Draws particles anew, a share of them from the whole surface: those behind the others, whose number is returned.
+    pub fn resample(&mut self, noise: &Noise, moved: f64, fresh_share: f64) -> usize {
+        let count = self.particles.len();
+        let anew = ((fresh_share * count as f64) as usize).min(count - 1);
+        let kept = count - anew;
+        let offset = self.stream().uniform(0);
+        systematic(&self.weights, offset, &mut self.parents[..kept]);
+        self.parents[kept..].fill(0);
+        self.spare.gather(&self.particles, &self.parents);
+        std::mem::swap(&mut self.particles, &mut self.spare);
+        let apart = noise.point.unwrap_or_else(|| {
+            // A contact that is held to be fixed is not: it moves about as much as the robot does.
+            let slip = if self.options.motion == Motion::Curvature { 0.0 } else { SLIP * moved };
+            self.adaptation.apart(self.modes.spread).max(slip)
+        });
+        for k in 0..kept {
+            let copy = k > 0 && self.parents[k] == self.parents[k - 1];
+            self.particles.spread[k] = if copy || noise.point.is_some() { apart } else { 0.0 };
+            self.particles.log_weight[k] = 0.0;
+        }
+        let random = self.stream();
+        for k in kept..count {
+            self.births.anywhere(&self.frames, &random, &mut self.particles, k);
+        }
+        self.weights.fill(1.0 / count as f64);
+        self.rejuvenate();
+        kept
+    }
+
+    pub(super) fn rejuvenate(&mut self) {
+        let apart = Rejuvenation {
+            motion: self.options.motion,
+            measuring: self.measuring(),
+            keep_torque: self.options.likelihood == Likelihood::Gaussian,
+            stiffness_range: self.options.stiffness_range,
+            most_force: self.options.force_range[1],
+            random: self.stream(),
+        };
+        let threads = self.threads();
+        let Self { robot, frames, particles, .. } = self;
+        let work = |start: usize, mut slice: Slice<'_>| apart.apply(robot, frames, start, &mut slice);
+        parallel::for_each(particles.slice(), 0, threads, &work);
+    }
+}
