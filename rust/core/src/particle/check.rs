@@ -88,9 +88,10 @@ impl Check {
         let contradicted = slope.value + EXCLUDED * slope.error < softest;
         let spare = told.frames.links[link].joints() > FITTED;
         self.hold = if spare { HOLD } else { HOLD_WITHOUT_SPARE };
-        let least = if spare { 0.0 } else { CLEARLY_STIFFER * softest };
+        let least = if spare { softest } else { CLEARLY_STIFFER * softest };
+        let kept = if spare { 0.0 } else { least };
         let confirmed = slope.value >= (CONFIRMED * slope.error).max(least);
-        (contradicted, (confirmed || slope.value < (DOUBTED * slope.error).max(least)).then_some(confirmed))
+        (contradicted, (confirmed || slope.value < (DOUBTED * slope.error).max(kept)).then_some(confirmed))
     }
 
     /// Whether a single push explains the last updates.
