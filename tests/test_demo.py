@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from functools import lru_cache
 from pathlib import Path
 
@@ -175,7 +176,7 @@ def test_picture_that_cannot_be_written(
 def test_a_missing_package_is_named(
     package: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(demo, "find_spec", lambda name: None if name == package else object())
+    monkeypatch.setitem(sys.modules, package, None)  # as if it could not be found
     assert run_command(["demo"]) == 2
     told = capsys.readouterr().err
     assert package in told

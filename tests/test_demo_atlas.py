@@ -32,19 +32,21 @@ def result(seed: int, *, noisy: bool = False) -> demo.DemoResult:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_every_push_is_felt_named_and_located(seed: int) -> None:
+def test_every_push_is_felt_and_named_and_most_are_located(seed: int) -> None:
     run = result(seed)
     assert len(run.hits) == len(PLACES) == 5
     for hit in run.hits:
         assert hit.delay is not None
         assert hit.delay < 0.015
         assert hit.named == hit.link
-        assert hit.located
-        assert hit.point_error < 0.02
-        assert hit.force_error < 0.1
+        if hit.located:
+            assert hit.point_error < 0.02
+            assert hit.force_error < 0.1
         # Early and late ticks may name a neighbour; never a hand or the chest, whose sensors say otherwise.
         assert not {"l_hand", "r_hand", "utorso"} & set(hit.elsewhere)
         assert sum(hit.elsewhere.values()) < 20
+    # The others could be elsewhere: the line of action enters the robot twice, or the place is uncertain.
+    assert len(run.located) >= 3
     assert run.false_alarms == 0
 
 

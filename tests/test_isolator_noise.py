@@ -26,8 +26,23 @@ def push_torque(
     return robot.jacobian(q, link, point)[:3].T @ force
 
 
-@pytest.mark.parametrize("free", [True, False])
-@pytest.mark.parametrize("name", ROBOTS)
+def is_covered(robot: cs.Robot, q: np.ndarray, link: str, point: np.ndarray, inward: np.ndarray) -> bool:
+    """Whether the point lies inside another link, or nothing thicker than 5 mm could push there."""
+    for other in robot.link_names:
+        if other == link:
+            continue
+        pose = robot.link_pose(q, other)
+        local = (point - pose[:3, 3]) @ pose[:3, :3]
+        distances = robot.surface(other).cast_rays([local], [-inward @ pose[:3, :3]]).distance
+        if len(distances) % 2 == 1 or (len(distances) and distances.min() < 0.005):
+            return True
+    return False
+
+
+# The nested, open meshes of Talos' wrists do not tell what is inside another link.
+@pytest.mark.parametrize(
+    ("name", "free"), [(name, free) for name in ROBOTS for free in (True, False) if free or name != "talos"]
+)
 def test_located_points_are_within_their_uncertainty(name: str, free: bool) -> None:
     """Pushes along free lines, and along lines that other parts of the robot bar, which are harder."""
     robot = robot_named(name)
@@ -46,7 +61,10 @@ def test_located_points_are_within_their_uncertainty(name: str, free: bool) -> N
             sample = robot.surface(link).sample(1, seed=int(rng.integers(2**32)))
             pose = robot.link_pose(q, link)
             point = pose[:3, :3] @ sample.points[0] + pose[:3, 3]
-            force = -pose[:3, :3] @ sample.normals[0] * rng.uniform(*FORCE)
+            normal = pose[:3, :3] @ sample.normals[0]
+            if is_covered(robot, q, link, point, -normal):
+                continue
+            force = -normal * rng.uniform(*FORCE)
         pushes += 1
         tau = push_torque(robot, q, link, point, force) + SIGMA * rng.standard_normal(robot.nv)
         for contact in isolator.isolate(q, tau).contacts:
@@ -54,8 +72,7 @@ def test_located_points_are_within_their_uncertainty(name: str, free: bool) -> N
                 located += 1
                 off = np.linalg.norm(contact.point - point)
                 wrong += off > 0.01 + 3 * contact.point_std
-    # Of few, one is more than one per cent. What a barred line meets may lie inside another link.
-    assert wrong <= (0.01 if free else 0.02) * located + 1
+    assert wrong <= 0.01 * located + 1  # of few, one is more than one per cent
     assert located >= 0.02 * pushes
 
 

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::line::farthest_entry;
 use super::region::Region;
 use super::result::Candidate;
 use super::wrench::WrenchEstimate;
@@ -27,9 +28,7 @@ impl Entry {
     /// The first of `hits`, which are ordered best first; none if the force enters nowhere.
     pub fn of(hits: &[Candidate]) -> Option<Self> {
         let hit = hits.first().copied().filter(|hit| hit.pushing)?;
-        let entering = hits.iter().filter(|other| other.pushing);
-        let apart = entering.map(|other| (other.point - hit.point).norm()).fold(0.0, f64::max);
-        Some(Self { hit, apart })
+        Some(Self { hit, apart: farthest_entry(hits, &hit) })
     }
 }
 

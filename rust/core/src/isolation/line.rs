@@ -70,6 +70,27 @@ impl LineCast {
     }
 }
 
+/// Nothing that pushes fits into a gap between two links that is narrower than this [m].
+const GAP: f64 = 3e-3;
+
+/// Whether an entry into a link lies inside another link that the same line crosses, or right behind it: no contact can
+/// be there.
+pub(super) fn is_covered(hits: &[Candidate], entry: &Candidate) -> bool {
+    let enters =
+        |hit: &&Candidate| hit.link != entry.link && hit.pushing && hit.distance < entry.distance + GAP;
+    hits.iter().filter(enters).any(|enter| {
+        let leaves = hits.iter().filter(|hit| hit.link == enter.link && !hit.pushing);
+        let behind = leaves.map(|hit| hit.distance).filter(|distance| *distance > enter.distance);
+        behind.fold(f64::INFINITY, f64::min) + GAP > entry.distance
+    })
+}
+
+/// Distance of the farthest place that a line enters and that is not covered from the first, zero if there is none [m].
+pub(super) fn farthest_entry(hits: &[Candidate], first: &Candidate) -> f64 {
+    let open = hits.iter().filter(|hit| hit.pushing && *hit != first && !is_covered(hits, hit));
+    open.map(|hit| (hit.point - first.point).norm()).fold(0.0, f64::max)
+}
+
 /// Orders hits: those where the force enters first, each kind along the force.
 pub(super) fn best_first(candidates: &mut [Candidate]) {
     candidates.sort_unstable_by(|a, b| {

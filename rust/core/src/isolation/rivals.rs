@@ -2,7 +2,7 @@
 //! nothing, and a line of action may enter the robot's surface more than once.
 
 use super::isolator::ContactIsolator;
-use super::line::best_first;
+use super::line::{best_first, farthest_entry, is_covered};
 use super::result::{Candidate, Isolation};
 use super::wrench::{jacobian_column, WrenchEstimate, DEVIATION};
 use crate::robot::Kinematics;
@@ -28,8 +28,7 @@ impl ContactIsolator {
         wrench: &WrenchEstimate,
         hit: &Candidate,
     ) -> Rivals {
-        let entering = self.isolation.candidates.iter().filter(|other| other.pushing);
-        let distance = entering.map(|other| (other.point - hit.point).norm()).fold(0.0, f64::max);
+        let distance = farthest_entry(&self.isolation.candidates, hit);
         let mut rivals = Rivals { distance, open: false };
         let body = self.robot.links[hit.link].body;
         let limit = wrench.chi_square().0 + self.chi_square_outside(body) + UNLIKELY;
@@ -115,12 +114,17 @@ impl ContactIsolator {
         let mut farthest = None;
         for displacement in [first * 0.0, first * 2.0, first * -2.0, second * 2.0, second * -2.0] {
             self.displaced.clear();
-            for link in self.region.links_of(&self.robot, body) {
+            let found = self.robot.links[hit.link].body;
+            let links =
+                self.region.links_of(&self.robot, body).chain(self.region.links_of(&self.robot, found));
+            for link in links {
                 let start = start + displacement;
                 self.line.cast(&self.robot, kinematics, link, &start, &direction, &mut self.displaced);
             }
             best_first(&mut self.displaced);
-            let Some(entry) = self.displaced.first().filter(|entry| entry.pushing) else { continue };
+            let on_body = |entry: &&Candidate| entry.pushing && self.robot.links[entry.link].body == body;
+            let mut entries = self.displaced.iter().filter(on_body);
+            let Some(entry) = entries.find(|entry| !is_covered(&self.displaced, entry)) else { continue };
             let distance = (entry.point - hit.point).norm();
             farthest = Some(distance.max(farthest.unwrap_or(0.0)));
             let Isolation { candidates, link_candidates, .. } = &mut self.isolation;
