@@ -2,6 +2,7 @@
 #![warn(missing_docs)]
 #![allow(rustdoc::broken_intra_doc_links)] // units such as [m] look like links
 
+mod chi_square;
 mod detection;
 pub mod error;
 pub mod isolation;

@@ -2,7 +2,6 @@
 
 mod body_set;
 mod caster;
-mod chi_square;
 mod conics;
 mod force;
 mod found;

@@ -2,12 +2,12 @@
 
 use nalgebra::Vector3;
 
-use super::chi_square::upper_limit;
 use super::force::{explain_force, identify_force};
 use super::found::Found;
 use super::isolator::{ContactIsolator, CONTRADICTION};
 use super::result::{Candidate, Contact};
 use super::wrench::{for_each_column, WrenchEstimate};
+use crate::chi_square::upper_limit;
 use crate::robot::motion::stack;
 use crate::robot::{Kinematics, Robot};
 

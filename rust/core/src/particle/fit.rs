@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 
 use super::frames::Frames;
 use super::measurement::{across, Measurement};
+use crate::chi_square::upper_limit;
 use crate::robot::Robot;
 
 /// Updates over which residuals are averaged: enough that noise of three times the stated size averages out to that size.
@@ -18,8 +19,6 @@ const GRANTED: f64 = 3.0;
 const GRANTED_UPDATES: f64 = 1.0;
 /// Parameters of a push: its force and two coordinates on the surface.
 pub(super) const FITTED: usize = 3;
-/// Quantile of the normal distribution up to which the mean residual is explained (99 %).
-const LEVEL: f64 = 2.326;
 
 /// Residuals of the last updates.
 #[derive(Debug, Clone)]
@@ -109,7 +108,7 @@ impl Fit {
 
     /// Whether a single push explains the window.
     pub fn explained(&self) -> bool {
-        self.statistic() <= chi_square(self.mean.len().saturating_sub(FITTED).max(1), LEVEL)
+        self.statistic() <= upper_limit(self.mean.len().saturating_sub(FITTED))
     }
 }
 
@@ -156,10 +155,4 @@ impl Push<'_> {
         let usable = found[0] > 0.0 && found.iter().all(|x| x.is_finite());
         usable.then(|| directions[0] * found[0] + directions[1] * found[1] + directions[2] * found[2])
     }
-}
-
-/// Quantile of a chi-square distribution by that of the normal one (Wilson and Hilferty 1931).
-fn chi_square(freedom: usize, normal: f64) -> f64 {
-    let share = 2.0 / (9.0 * freedom as f64);
-    freedom as f64 * (1.0 - share + normal * share.sqrt()).powi(3)
 }

@@ -5,7 +5,7 @@ const NORMAL_QUANTILE: f64 = 2.326;
 
 /// The value that a chi-square of `checks` degrees of freedom stays below in 99 % of cases, by the cube-root
 /// approximation of Wilson and Hilferty (1931), within 2 % for one degree and better for more.
-pub(super) fn upper_limit(checks: usize) -> f64 {
+pub(crate) fn upper_limit(checks: usize) -> f64 {
     let checks = checks.max(1) as f64;
     let variance = 2.0 / (9.0 * checks);
     checks * (1.0 - variance + NORMAL_QUANTILE * variance.sqrt()).powi(3)
