@@ -231,6 +231,8 @@ def interrupt(item):
     os.killpg(0, signal.SIGINT) if sys.argv[1] == "group" else os.kill(os.getpid(), signal.SIGINT)
 
 if __name__ == "__main__":
+    # A shell's background jobs ignore the signal, and so would this process.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     print(*collect(time.sleep, [0.1, 0.0, 10_000.0, 10_000.0], 2, interrupt), flush=True)
 """
 
