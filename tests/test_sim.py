@@ -133,7 +133,7 @@ def test_impossible_inertia_is_named() -> None:
 def test_absent_mujoco_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mujoco", None)
     monkeypatch.delitem(sys.modules, "contactsense.sim._mujoco")
-    with pytest.raises(ImportError, match=r"pip install contactsense\[sim\]"):
+    with pytest.raises(ImportError, match=r"pip install 'contactsense\[sim\]'"):
         importlib.import_module("contactsense.sim._mujoco")
 
 
