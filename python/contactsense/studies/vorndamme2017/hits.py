@@ -95,11 +95,12 @@ def inertial_wrenches(q: FloatArray, acceleration: FloatArray) -> FloatArray:
 
 
 def _signal(contacts: Sequence[Sequence[Contact]], points: FloatArray) -> Signal:
-    """The contact nearest to the truth, of those located."""
+    """The contact nearest to the truth, of those that have a point."""
     force, error = np.full((len(contacts), 3), np.nan), np.full(len(contacts), np.nan)
     for row, found in enumerate(contacts):
-        located = [(np.linalg.norm(each.point - points[row]), each) for each in found if each.located]
-        if located:
-            error[row], contact = min(located, key=lambda pair: pair[0])
+        known = [each for each in found if np.isfinite(each.point).all()]
+        estimates = [(np.linalg.norm(each.point - points[row]), each) for each in known]
+        if estimates:
+            error[row], contact = min(estimates, key=lambda pair: pair[0])
             force[row] = contact.force
     return Signal(force, error)
