@@ -252,12 +252,7 @@ impl ContactIsolator {
         if let Some(tip) = single(self).filter(|tip| self.is_single(kinematics, *tip)) {
             return self.isolate_single(kinematics, tip);
         }
-        self.set_rows(kinematics, None, true);
-        let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
-        let exact = self.several.solve_exactly(scene, &mut self.rows);
-        if exact {
-            self.several.narrow(self.rows.widest_threshold(&self.limit));
-        }
+        let exact = self.solve_exactly(kinematics, None);
         if exact && self.several.verified {
             self.identify(kinematics, None);
             return self.report_several(kinematics);
@@ -324,6 +319,17 @@ impl ContactIsolator {
         self.rows.root = root.map(|root| if widened { *root } else { root.narrow() });
     }
 
+    /// Contacts that explain the torques but for rounding.
+    fn solve_exactly(&mut self, kinematics: &Kinematics, root: Option<&Root>) -> bool {
+        self.set_rows(kinematics, root, true);
+        let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
+        let exact = self.several.solve_exactly(scene, &mut self.rows);
+        if exact {
+            self.several.narrow(self.rows.widest_threshold(&self.limit));
+        }
+        exact
+    }
+
     /// Several forces that explain the torques within the thresholds, or within `widened` tolerances; tips are found.
     fn solve_roughly(&mut self, kinematics: &Kinematics, root: Option<&Root>, widened: bool) -> bool {
         self.set_rows(kinematics, root, widened);
@@ -343,12 +349,7 @@ impl ContactIsolator {
     /// Several forces that explain a sensor's wrench and the torques behind it; where one force does, only if they fit
     /// but for rounding.
     pub(super) fn solve_several(&mut self, kinematics: &Kinematics, root: &Root, one_does: bool) -> bool {
-        self.set_rows(kinematics, Some(root), true);
-        let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
-        let exact = self.several.solve_exactly(scene, &mut self.rows);
-        if exact {
-            self.several.narrow(self.rows.widest_threshold(&self.limit));
-        }
+        let exact = self.solve_exactly(kinematics, Some(root));
         if one_does && !(exact && self.several.verified) {
             return false;
         }

@@ -9,9 +9,8 @@ fn at(x: f64) -> Pose {
     Pose { translation: Vector3::new(x, 0.0, 0.0), ..Pose::identity() }
 }
 
-/// base - j1 - a - (fixed) - b - j2 - c, and d on a joint at a; links listed backwards.
-fn robot() -> Robot {
-    let joint = |name: &str, parent| JointDescription {
+fn joint(name: &str, parent: usize) -> JointDescription {
+    JointDescription {
         name: name.into(),
         parent,
         kind: JointKind::Revolute,
@@ -21,7 +20,11 @@ fn robot() -> Robot {
         com: Vector3::zeros(),
         inertia: Matrix3::identity(),
         armature: 0.0,
-    };
+    }
+}
+
+/// base - j1 - a - (fixed) - b - j2 - c, and d on a joint at a; links listed backwards.
+fn robot() -> Robot {
     let link = |name: &str, joint, x, parent| LinkDescription {
         name: name.into(),
         joint,
@@ -98,17 +101,7 @@ fn bad_sensors_are_named() {
 
 #[test]
 fn long_chains_without_links_need_no_deep_stack() {
-    let joint = |index: usize| JointDescription {
-        name: format!("j{index}"),
-        parent: index,
-        kind: JointKind::Revolute,
-        axis: Vector3::y(),
-        placement: at(1.0),
-        mass: 1.0,
-        com: Vector3::zeros(),
-        inertia: Matrix3::identity(),
-        armature: 0.0,
-    };
+    let joint = |index: usize| joint(&format!("j{index}"), index);
     let robot = Robot::new(RobotDescription {
         name: "chain".into(),
         joints: (0..3000).map(joint).collect(),
