@@ -3,7 +3,7 @@
 
 use super::found::Scene;
 use super::region::Region;
-use super::wrench::{jacobian_column, WrenchEstimate};
+use super::wrench::{jacobian_column, WrenchEstimate, ORIGIN};
 use crate::robot::Robot;
 
 /// A set of bodies, grown from a contact body away from the base.
@@ -29,7 +29,7 @@ impl BodySet {
         let Scene { robot, kinematics, region } = scene;
         self.fill(robot, region, first, |body| {
             robot.velocity_range(body).enumerate().all(|(column, k)| {
-                let axis = jacobian_column(robot, kinematics, body, column, &wrench.reference);
+                let axis = jacobian_column(robot, kinematics, body, column, &ORIGIN);
                 (wrench.torque_on(&axis) - torque[k]).abs() <= threshold[k]
             })
         });

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Vector3, Vector6};
+use nalgebra::Vector6;
 
 use super::body_set::BodySet;
 use super::found::Scene;
@@ -343,7 +343,7 @@ impl ContactIsolator {
         for joint in self.region.chain(&self.robot, tip) {
             self.rows.push_joint(&self.robot, joint, &mut rows);
         }
-        WrenchEstimate::from_rows(rows, Vector3::zeros()).misfit() <= CONTRADICTION
+        WrenchEstimate::from_rows(rows).misfit() <= CONTRADICTION
     }
 
     /// Several forces that explain a sensor's wrench and the torques behind it; where one force does, only if they fit

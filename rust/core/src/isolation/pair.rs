@@ -3,7 +3,7 @@
 //! Unknowns are the wrench on the second body and the sum of both: joints before both bodies feel the sum alone, so
 //! the rank deficit (eq. 31) is all in the second wrench, and the first is the difference.
 
-use nalgebra::{Matrix6, SMatrix, Vector3, Vector6};
+use nalgebra::{Matrix6, SMatrix, Vector6};
 
 use super::region::Region;
 use super::rows::{TorqueRows, WrenchRows};
@@ -110,7 +110,7 @@ impl PairEstimate {
         let [first, second] = self.scaled(open);
         [(first, &self.roots[0]), (second, &self.roots[1])].map(|(wrench, root)| {
             let rank = 6 - self.deficit;
-            WrenchEstimate::new(&wrench, *root, Vector3::zeros(), rank, self.unexplained, redundant)
+            WrenchEstimate::new(&wrench, *root, rank, self.unexplained, redundant)
         })
     }
 

@@ -6,7 +6,7 @@ use super::force::{explain_force, identify_force};
 use super::found::Found;
 use super::isolator::{ContactIsolator, CONTRADICTION};
 use super::result::{Candidate, Contact};
-use super::wrench::{for_each_column, WrenchEstimate};
+use super::wrench::{for_each_column, WrenchEstimate, ORIGIN};
 use crate::chi_square::upper_limit;
 use crate::robot::motion::stack;
 use crate::robot::{Kinematics, Robot};
@@ -160,7 +160,7 @@ impl ContactIsolator {
         if let Some(contact) = self.isolation.contacts.last_mut() {
             let origin = kinematics.link_pose(&self.robot, contact.link).translation - kinematics.origin;
             contact.force = wrench.force;
-            let moment = wrench.moment + (wrench.reference - origin).cross(&wrench.force);
+            let moment = wrench.moment + wrench.force.cross(&origin);
             contact.wrench = stack(&wrench.force, &moment);
             contact.candidates.end = end;
         }
@@ -206,7 +206,7 @@ impl ContactIsolator {
     /// Takes what a wrench on `body` explains out of the unexplained torque.
     pub(super) fn explain(&mut self, kinematics: &Kinematics, body: usize, wrench: &WrenchEstimate) {
         let Self { robot, unexplained, .. } = self;
-        for_each_column(robot, kinematics, body, &wrench.reference, |k, column| {
+        for_each_column(robot, kinematics, body, &ORIGIN, |k, column| {
             unexplained[k] -= wrench.torque_on(&column);
         });
     }

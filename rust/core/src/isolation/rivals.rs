@@ -4,7 +4,7 @@
 use super::isolator::ContactIsolator;
 use super::line::{best_first, farthest_entry, is_covered};
 use super::result::{Candidate, Isolation};
-use super::wrench::{jacobian_column, WrenchEstimate, DEVIATION};
+use super::wrench::{jacobian_column, WrenchEstimate, DEVIATION, ORIGIN};
 use crate::robot::Kinematics;
 
 /// A hypothesis is unlikely if its chi-square exceeds the best one's by this: a likelihood ratio of 100.
@@ -89,7 +89,7 @@ impl ContactIsolator {
             excluded[other] = last.is_some_and(|joint| !chain.contains(&joint));
             if other > body && chain.contains(&body) {
                 let feels = |(column, k): (usize, usize)| {
-                    let axis = jacobian_column(robot, kinematics, other, column, &wrench.reference);
+                    let axis = jacobian_column(robot, kinematics, other, column, &ORIGIN);
                     wrench.innovation(&axis, residual[k], threshold[k]).powi(2) <= limit
                 };
                 let parent = robot.parent_body(other);

@@ -1,9 +1,9 @@
 //! What the signals of one instant say of wrenches: a row for every joint torque, all about one reference point.
 
-use nalgebra::{SMatrix, Vector3, Vector6};
+use nalgebra::{SMatrix, Vector6};
 
 use super::region::Region;
-use super::wrench::{jacobian_column, WrenchEstimate};
+use super::wrench::{jacobian_column, WrenchEstimate, ORIGIN};
 use crate::robot::{Kinematics, Robot};
 
 /// Balances moments against forces in rank decisions: a typical lever arm [m].
@@ -48,7 +48,7 @@ impl Root {
     pub fn estimate(&self) -> WrenchEstimate {
         let mut rows = WrenchRows::new();
         self.push(&mut rows);
-        WrenchEstimate::from_rows(rows, Vector3::zeros())
+        WrenchEstimate::from_rows(rows)
     }
 
     pub fn push(&self, rows: &mut WrenchRows) {
@@ -75,10 +75,9 @@ impl TorqueRows {
         threshold: &[f64],
         widened: bool,
     ) {
-        let reference = Vector3::zeros();
         for body in 1..robot.body_count() {
             for (column, k) in robot.velocity_range(body).enumerate() {
-                self.axes[k] = jacobian_column(robot, kinematics, body, column, &reference);
+                self.axes[k] = jacobian_column(robot, kinematics, body, column, &ORIGIN);
             }
         }
         self.torque.copy_from_slice(torque);

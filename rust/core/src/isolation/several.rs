@@ -196,7 +196,7 @@ impl SeveralContacts {
         for joint in scene.region.chain(scene.robot, tip) {
             rows.push_joint(scene.robot, joint, &mut wrench_rows);
         }
-        let wrench = WrenchEstimate::from_rows(wrench_rows, Vector3::zeros());
+        let wrench = WrenchEstimate::from_rows(wrench_rows);
         let exact = wrench.rank == 6 && wrench.misfit() <= EXACT;
         let hit = if exact { self.caster.hit_behind(scene, rows, tip, &wrench, EXACT) } else { None };
         hit.map(|hit| self.found.push(Found::new(wrench, hit))).is_some()
@@ -215,7 +215,7 @@ impl SeveralContacts {
             if wrench_rows.count < 6 {
                 continue;
             }
-            let wrench = WrenchEstimate::from_rows(wrench_rows.clone(), Vector3::zeros());
+            let wrench = WrenchEstimate::from_rows(wrench_rows.clone());
             if wrench.rank < 6 {
                 continue;
             }
@@ -347,7 +347,7 @@ fn rest_is_explained(scene: Scene, rows: &TorqueRows, before: usize, tip: usize)
     for joint in scene.region.chain(robot, before) {
         rows.push_joint(robot, joint, &mut wrench_rows);
     }
-    let total = WrenchEstimate::from_rows(wrench_rows, Vector3::zeros());
+    let total = WrenchEstimate::from_rows(wrench_rows);
     let explained = |k: usize| (total.torque_on(&rows.axes[k]) - rows.torque[k]).abs() <= rows.tolerance[k];
     let behind = |joint: &usize| !robot.chain(before).contains(joint);
     let mut rest = scene.region.chain(robot, tip).filter(behind);
@@ -362,8 +362,8 @@ fn first_unexplained(scene: Scene, rows: &TorqueRows, tip: usize) -> Option<usiz
     let mut total: Option<WrenchEstimate> = None;
     for joint in region.chain(robot, tip) {
         if total.is_none() && wrench_rows.count >= 6 {
-            total = Some(WrenchEstimate::from_rows(wrench_rows.clone(), Vector3::zeros()))
-                .filter(|estimate| estimate.rank == 6);
+            total =
+                Some(WrenchEstimate::from_rows(wrench_rows.clone())).filter(|estimate| estimate.rank == 6);
         }
         match &total {
             None => rows.push_joint(robot, joint, &mut wrench_rows),

@@ -125,7 +125,7 @@ impl Stacked {
             .map_or_else(|| Matrix6::from_diagonal(&covariance.diagonal().map(f64::sqrt)), |c| c.l());
         let solution = Vector6::from_column_slice(&self.solution[block]);
         let redundant = self.redundant();
-        WrenchEstimate::new(&solution, root, Vector3::zeros(), 6 - open.min(6), self.unexplained, redundant)
+        WrenchEstimate::new(&solution, root, 6 - open.min(6), self.unexplained, redundant)
     }
 
     /// Root mean square of what contradicts forces without moments, in tolerances; none above `limit`.

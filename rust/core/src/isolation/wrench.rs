@@ -13,14 +13,15 @@ pub(super) const SVD_ITERATIONS: usize = 200;
 /// Standard deviation of a torque in thresholds: thresholds are taken to lie three standard deviations above zero.
 pub(super) const DEVIATION: f64 = 1.0 / 3.0;
 
+/// The kinematics' origin, which the moments of all wrenches refer to: so a rank is the same wherever it is asked for.
+pub(super) const ORIGIN: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
+
 /// What the torques of a chain say of a wrench on its last body.
 #[derive(Debug, Clone)]
 pub(super) struct WrenchEstimate {
     pub force: Vector3<f64>,
-    /// About `reference`.
+    /// About [`ORIGIN`].
     pub moment: Vector3<f64>,
-    /// Where the moment refers to, from the kinematics' origin.
-    pub reference: Vector3<f64>,
     pub rank: usize,
     /// `root * root^T` is the covariance of the wrench if each torque's standard deviation is its threshold.
     root: Matrix6<f64>,
@@ -68,13 +69,11 @@ pub(super) fn estimate_wrench(
     torque: &[f64],
     threshold: &[f64],
 ) -> WrenchEstimate {
-    // One reference for all wrenches of a robot, so that a rank is the same wherever it is asked for.
-    let reference = Vector3::zeros();
     let mut rows = WrenchRows::new();
-    for_each_column(robot, kinematics, body, &reference, |k, column| {
+    for_each_column(robot, kinematics, body, &ORIGIN, |k, column| {
         rows.push(&column, torque[k], 1.0 / threshold[k]);
     });
-    WrenchEstimate::from_rows(rows, reference)
+    WrenchEstimate::from_rows(rows)
 }
 
 /// The inverse of a triangle that is safely regular: its norm bounds the smallest singular value from below.
@@ -99,7 +98,7 @@ pub(super) fn minimum_norm(factor: &Matrix6<f64>, rhs: &Vector6<f64>) -> (Vector
 
 impl WrenchEstimate {
     /// Least squares; minimum norm where the rows leave the wrench open.
-    pub fn from_rows(mut rows: WrenchRows, reference: Vector3<f64>) -> Self {
+    pub fn from_rows(mut rows: WrenchRows) -> Self {
         let triangle = rows.triangle();
         let factor: Matrix6<f64> = triangle.fixed_view::<6, 6>(0, 0).into_owned();
         let rhs: Vector6<f64> = triangle.fixed_view::<6, 1>(0, 6).into_owned();
@@ -108,14 +107,13 @@ impl WrenchEstimate {
             None => minimum_norm(&factor, &rhs),
         };
         let redundant = rows.count.saturating_sub(6);
-        Self::new(&solution, root, reference, rank, rows.unexplained, redundant)
+        Self::new(&solution, root, rank, rows.unexplained, redundant)
     }
 
     /// Of a solution and its covariance's root whose moments are scaled by the lever.
     pub fn new(
         solution: &Vector6<f64>,
         mut root: Matrix6<f64>,
-        reference: Vector3<f64>,
         rank: usize,
         unexplained: f64,
         redundant: usize,
@@ -124,25 +122,16 @@ impl WrenchEstimate {
             root.row_mut(i).unscale_mut(LEVER);
         }
         let (force, moment) = split(solution);
-        Self {
-            force,
-            moment: moment / LEVER,
-            reference,
-            rank,
-            root,
-            unexplained,
-            redundant,
-            deviation: DEVIATION,
-        }
+        Self { force, moment: moment / LEVER, rank, root, unexplained, redundant, deviation: DEVIATION }
     }
 
-    /// The point of the line of action nearest to `reference` (Vorndamme 2017, eq. 26), and its direction.
+    /// The point of the line of action nearest to [`ORIGIN`] (Vorndamme 2017, eq. 26), and its direction.
     pub fn line_of_action(&self) -> Option<(Vector3<f64>, Vector3<f64>)> {
         let size = self.force.norm();
         if size.is_nan() || size < f64::MIN_POSITIVE.sqrt() {
             return None;
         }
-        let start = self.reference + self.force.cross(&self.moment) / (size * size);
+        let start = self.force.cross(&self.moment) / (size * size);
         Some((start, self.force / size))
     }
 
@@ -159,7 +148,7 @@ impl WrenchEstimate {
 
     /// Two displacements of the line at a point of it, across the line and each other, by one standard deviation [m].
     pub fn displacements(&self, point: &Vector3<f64>) -> [Vector3<f64>; 2] {
-        let lever = (point - self.reference).cross_matrix();
+        let lever = point.cross_matrix();
         let across = self.force.cross_matrix() / self.force.norm_squared();
         let mut map = Matrix3x6::zeros();
         map.fixed_view_mut::<3, 3>(0, 0).copy_from(&(-(across * lever)));
