@@ -6,7 +6,6 @@ use nalgebra::Vector6;
 
 use super::signal_tree::{Signal, SignalTree};
 use crate::error::{Error, Result};
-use crate::robot::configuration::check_vector;
 use crate::robot::Robot;
 use crate::sensor::{is_known, SensorTree};
 
@@ -129,11 +128,7 @@ impl Detector {
 
 /// One threshold for all velocity variables, or one for each; positive and finite.
 pub(crate) fn check_threshold(robot: &Robot, threshold: &[f64]) -> Result<Vec<f64>> {
-    let threshold = match threshold {
-        [one] => vec![*one; robot.nv()],
-        _ => threshold.to_vec(),
-    };
-    check_vector("torque_threshold", &threshold, robot.nv())?;
+    let threshold = robot.per_velocity("torque_threshold", threshold)?;
     if threshold.iter().any(|x| *x <= 0.0) {
         return Err(Error::Input("torque_threshold: must be positive [Nm]".into()));
     }

@@ -3,7 +3,6 @@
 use super::release::ReleaseRule;
 use crate::error::{Error, Result};
 use crate::isolation::IsolatorOptions;
-use crate::robot::configuration::check_vector;
 use crate::robot::{JointKind, Robot};
 
 /// Settings of a [`ContactMonitor`](super::ContactMonitor).
@@ -65,11 +64,7 @@ impl MonitorOptions {
                 "bias_settle_time: must be positive and finite [s], or none, not {time}"
             )));
         }
-        let hysteresis = match self.hysteresis[..] {
-            [one] => vec![one; robot.nv()],
-            _ => self.hysteresis.clone(),
-        };
-        check_vector("hysteresis", &hysteresis, robot.nv())?;
+        let hysteresis = robot.per_velocity("hysteresis", &self.hysteresis)?;
         if let Some(share) = hysteresis.iter().find(|share| !(0.0..1.0).contains(*share)) {
             return Err(Error::Input(format!("hysteresis: must be a share from 0 to below 1, not {share}")));
         }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::step::{check_time_step, Step};
 use crate::error::{Error, Result};
-use crate::robot::configuration::{check_vector, spread_torque};
+use crate::robot::configuration::spread_torque;
 use crate::robot::{ForwardDynamics, Kinematics, MomentumPass, Robot};
 
 /// Estimates the external torque from `q`, `v` and the motors' torque, without acceleration.
@@ -44,11 +44,7 @@ impl MomentumObserver {
     pub fn new(robot: Arc<Robot>, dt: f64, gain: &[f64]) -> Result<Self> {
         check_time_step(dt)?;
         let nv = robot.nv();
-        let gain = match gain {
-            [gain] => vec![*gain; nv],
-            _ => gain.to_vec(),
-        };
-        check_vector("gain", &gain, nv)?;
+        let gain = robot.per_velocity("gain", gain)?;
         if gain.iter().any(|gain| *gain <= 0.0) {
             return Err(Error::Input("gain: must be positive [1/s]".into()));
         }

@@ -135,11 +135,8 @@ impl FilterOptions {
     }
 
     /// One positive number a velocity variable.
-    pub(super) fn per_joint(name: &str, values: &[f64], nv: usize) -> Result<Vec<f64>> {
-        let all = if values.len() == 1 { vec![values[0]; nv] } else { values.to_vec() };
-        if all.len() != nv {
-            return Err(Error::Input(format!("{name}: expected 1 or {nv} numbers, got {}", values.len())));
-        }
+    pub(super) fn per_joint(robot: &Robot, name: &str, values: &[f64]) -> Result<Vec<f64>> {
+        let all = robot.per_velocity(name, values)?;
         match all.iter().find(|x| !(LEAST_TORQUE..LARGEST).contains(*x)) {
             Some(value) => {
                 Err(Error::Input(format!("{name}: must be at least {LEAST_TORQUE:e}, got {value}")))

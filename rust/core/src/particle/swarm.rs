@@ -80,11 +80,11 @@ impl Swarm {
         let count = options.particles;
         // All of it at once, so that a part is not filled in vain.
         drop(space::<[u8; PARTICLE]>(count)?);
-        let torque_noise = FilterOptions::per_joint("torque_noise", &options.torque_noise, nv)?;
+        let torque_noise = FilterOptions::per_joint(&robot, "torque_noise", &options.torque_noise)?;
         Ok(Self {
             check: Check::new(&options, torque_noise.clone()),
             torque_noise,
-            threshold: FilterOptions::per_joint("torque_threshold", &options.torque_threshold, nv)?,
+            threshold: FilterOptions::per_joint(&robot, "torque_threshold", &options.torque_threshold)?,
             torque: vec![0.0; nv],
             noise: vec![1.0; nv],
             turning: turning(&robot),

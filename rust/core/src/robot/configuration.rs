@@ -78,6 +78,24 @@ impl Robot {
         check_vector(argument, values, self.nv())
     }
 
+    /// One number for each velocity variable, from as many or from one that holds for all; checked as by
+    /// [`check_tangent`](Self::check_tangent).
+    pub(crate) fn per_velocity(&self, argument: &str, values: &[f64]) -> Result<Vec<f64>> {
+        let all = match values {
+            [one] => vec![*one; self.nv()],
+            _ if values.len() == self.nv() => values.to_vec(),
+            _ => {
+                let wanted = self.nv();
+                return Err(Error::Input(format!(
+                    "{argument}: expected one number or {wanted}, got {}",
+                    values.len()
+                )));
+            }
+        };
+        check_vector(argument, &all, self.nv())?;
+        Ok(all)
+    }
+
     /// Checks measured torques: `nv`, or `nv - 6` for a floating base (its six are then zero).
     ///
     /// # Errors
