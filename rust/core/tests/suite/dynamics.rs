@@ -1,9 +1,8 @@
 //! Dynamics against each other and against finite differences; Pinocchio checks them from Python.
 
+use crate::common;
 use contactsense::robot::{Kinematics, MomentumPass, Robot};
 use nalgebra::DVector;
-
-mod common;
 
 fn robots() -> [std::sync::Arc<Robot>; 2] {
     [common::arm(), common::humanoid()]

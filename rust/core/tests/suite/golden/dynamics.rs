@@ -2,7 +2,7 @@
 
 use contactsense::observer::MomentumObserver;
 
-use crate::data::{read, robot, Dynamics, Motion};
+use super::data::{read, robot, Dynamics, Motion};
 
 /// Relative to the greatest number of a kind.
 const EXACT: f64 = 1e-10;

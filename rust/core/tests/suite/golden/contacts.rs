@@ -3,7 +3,7 @@
 use contactsense::isolation::{Contact, ContactIsolator, Isolation, IsolatorOptions};
 use nalgebra::Vector3;
 
-use crate::data::{read, robot, Contacts, Push};
+use super::data::{read, robot, Contacts, Push};
 
 const ROBOTS: [&str; 3] = ["iiwa14", "atlas", "meshed_arm"];
 /// Of a point from exact torques [m].

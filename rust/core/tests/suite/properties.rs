@@ -1,5 +1,6 @@
 //! Any input gives an answer or an error: nothing panics, and an error leaves the state as it was.
 
+use crate::common;
 use contactsense::isolation::{ContactIsolator, IsolatorOptions};
 use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
 use contactsense::observer::MomentumObserver;
@@ -7,8 +8,6 @@ use contactsense::sensor::{Convention, ForceTorqueSensor};
 use contactsense::spatial::Pose;
 use contactsense::Error;
 use proptest::prelude::*;
-
-mod common;
 
 /// Numbers of any size, now and then no number.
 fn any_number() -> impl Strategy<Value = f64> {

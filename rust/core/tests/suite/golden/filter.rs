@@ -3,7 +3,7 @@
 use contactsense::particle::{ContactParticleFilter, FilterOptions};
 use nalgebra::Vector3;
 
-use crate::data::{read, robot, Runs};
+use super::data::{read, robot, Runs};
 
 /// Of the point [m].
 const NEAR: f64 = 0.01;

@@ -1,7 +1,6 @@
 //! The particle filter finds a ball that an arm leans on, the same on any number of threads.
 
-mod common;
-
+use crate::common;
 use contactsense::particle::{ContactParticleFilter, Event, FilterOptions, Likelihood, Motion, Schedule};
 use contactsense::Error;
 

@@ -1,0 +1,11 @@
+//! The library as its users call it. One program, since each is linked for half a minute in a release build; the count of
+//! allocations is of a whole process and has its own.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod dynamics;
+mod golden;
+mod mutated_files;
+mod particle_filter;
+mod properties;
