@@ -2,7 +2,5 @@
 
 mod detector;
 mod signal_tree;
-mod tips;
 
 pub(crate) use detector::{check_threshold, check_wrench_threshold, Detector};
-pub(crate) use tips::TipSearch;

@@ -4,8 +4,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::region::Region;
 use super::wrench::{for_each_column, jacobian_column};
-use crate::robot::motion::split;
 use crate::robot::{Kinematics, Robot};
+use crate::spatial::vector::split;
 
 /// Smallest pivot of the normal matrix's root, as a share of the largest: its square is the condition of the matrix,
 /// which costs the force that share of its digits.

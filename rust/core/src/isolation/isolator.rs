@@ -11,11 +11,13 @@ use super::region::{Region, Regions};
 use super::result::{Candidate, Isolation};
 use super::rows::{Root, TorqueRows, WrenchRows};
 use super::several::SeveralContacts;
+use super::tips::TipSearch;
 use super::wrench::WrenchEstimate;
-use crate::detection::{check_threshold, check_wrench_threshold, TipSearch};
+use crate::detection::{check_threshold, check_wrench_threshold};
 use crate::error::{Error, Result};
+use crate::observer::WrenchObserver;
 use crate::robot::{Kinematics, Robot};
-use crate::sensor::{ForceTorqueSensor, SensorTree, WrenchObserver};
+use crate::sensor::{ForceTorqueSensor, SensorTree};
 
 /// All hits of one instant that are kept.
 const CANDIDATES: usize = 512;

@@ -7,9 +7,9 @@ use super::found::Found;
 use super::isolator::{ContactIsolator, CONTRADICTION};
 use super::result::{Candidate, Contact};
 use super::wrench::{for_each_column, WrenchEstimate, ORIGIN};
-use crate::chi_square::upper_limit;
-use crate::robot::motion::stack;
+use crate::math::chi_square::upper_limit;
 use crate::robot::{Kinematics, Robot};
+use crate::spatial::vector::stack;
 
 /// One of several contacts is located if its point's standard deviation is less [m].
 const SHARP: f64 = 0.01;

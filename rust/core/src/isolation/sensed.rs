@@ -8,9 +8,10 @@ use super::line::best_first;
 use super::result::Contact;
 use super::rows::{Root, TORQUE_SHARE};
 use super::wrench::{jacobian_column, WrenchEstimate};
-use crate::robot::motion::{split, stack};
+use crate::observer::WrenchObserver;
 use crate::robot::Kinematics;
-use crate::sensor::{is_known, sensor_torque, WrenchObserver};
+use crate::sensor::{is_known, sensor_torque};
+use crate::spatial::vector::{split, stack};
 
 /// Moment along the force that rounding leaves [tolerances].
 const EXACT: f64 = 1e-6;

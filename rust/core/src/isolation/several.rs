@@ -12,9 +12,9 @@ use super::pair::{estimate_pair, Open, PairEstimate};
 use super::rows::{TorqueRows, WrenchRows};
 use super::stacked::Stacked;
 use super::surface_search::{steepness, SurfaceSearch, PAIRS, STARTS};
+use super::tips::TipSearch;
 use super::work::Work;
 use super::wrench::WrenchEstimate;
-use crate::detection::TipSearch;
 use crate::robot::{Robot, WORLD};
 
 /// What rounding leaves of an exact solution [tolerances].

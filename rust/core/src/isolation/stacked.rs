@@ -4,12 +4,12 @@
 use nalgebra::{Matrix6, Vector3, Vector6};
 
 use super::found::Scene;
-use super::least_squares::LeastSquares;
 use super::rows::{Root, TorqueRows, LEVER};
 use super::several::exceeds;
 use super::wrench::{WrenchEstimate, RANK_TOLERANCE};
-use crate::robot::motion::{split, stack};
+use crate::math::least_squares::LeastSquares;
 use crate::robot::Robot;
+use crate::spatial::vector::{split, stack};
 
 /// Share of an open direction that a contact may have and still count as determined.
 const UNTOUCHED: f64 = 1e-6;

@@ -3,8 +3,9 @@
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
 
 use super::rows::{WrenchRows, LEVER};
-use crate::robot::motion::{motion_axis, split, stack};
+use crate::robot::joint_axis::motion_axis;
 use crate::robot::{Kinematics, Robot};
+use crate::spatial::vector::{split, stack};
 
 /// Singular values below this share of the largest count as zero.
 pub(super) const RANK_TOLERANCE: f64 = 1e-7;

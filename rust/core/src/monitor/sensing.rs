@@ -5,10 +5,11 @@ use std::sync::Arc;
 use nalgebra::{Vector3, Vector6};
 
 use crate::error::Result;
+use crate::observer::WrenchObserver;
 use crate::observer::{MomentumObserver, Step};
-use crate::robot::motion::{split, stack};
 use crate::robot::{Kinematics, Robot};
-use crate::sensor::{check_readings, is_known, SensorTree, WrenchObserver};
+use crate::sensor::{check_readings, is_known, SensorTree};
+use crate::spatial::vector::{split, stack};
 
 /// A wanted sensor that comes back is trusted after so many time constants of the observer, which by then has
 /// forgotten what the sensor missed of a force that came and went.

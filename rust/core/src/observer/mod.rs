@@ -1,7 +1,9 @@
-//! Observers of the external torque.
+//! Observers of the external torque and of the wrenches on force/torque sensors.
 
 mod momentum_observer;
 mod step;
+mod wrench_observer;
 
 pub use momentum_observer::MomentumObserver;
 pub(crate) use step::{check_time_step, Step, LONGEST_STEP};
+pub(crate) use wrench_observer::WrenchObserver;

@@ -7,7 +7,7 @@ use super::frames::Frames;
 use super::memory::space;
 use super::options::{FilterOptions, Likelihood};
 use crate::error::{Error, Result};
-use crate::random::Stream;
+use crate::math::random::Stream;
 use crate::robot::Robot;
 use crate::surface::SurfacePoint;
 

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 
 use super::frames::Frames;
 use super::measurement::{across, Measurement};
-use crate::chi_square::upper_limit;
+use crate::math::chi_square::upper_limit;
 use crate::robot::Robot;
 
 /// Updates over which residuals are averaged: enough that noise of three times the stated size averages out to that size.

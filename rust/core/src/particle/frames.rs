@@ -2,8 +2,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::robot::motion::{motion_axis, split};
+use crate::robot::joint_axis::motion_axis;
 use crate::robot::{Kinematics, Robot, WORLD};
+use crate::spatial::vector::split;
 use crate::spatial::Pose;
 
 /// A joint axis in a link's frame, divided by the joint's noise: its torque under a force at a point is

@@ -8,7 +8,7 @@ use super::frames::Frames;
 use super::measurement::Measuring;
 use super::options::Motion;
 use super::schedule::Noise;
-use crate::random::Stream;
+use crate::math::random::Stream;
 use crate::robot::Robot;
 use crate::surface::{ClosestPoint, Surface};
 

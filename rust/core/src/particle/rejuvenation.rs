@@ -7,7 +7,7 @@ use super::frames::Frames;
 use super::measurement::{across, Measuring};
 use super::motion::{place, signed};
 use super::options::Motion;
-use crate::random::Stream;
+use crate::math::random::Stream;
 use crate::robot::Robot;
 
 /// Random numbers a particle uses at most.

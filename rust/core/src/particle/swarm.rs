@@ -21,7 +21,7 @@ use super::parallel;
 use super::resampling::{effective_share, normalise};
 use super::schedule::Noise;
 use crate::error::Result;
-use crate::random::Stream;
+use crate::math::random::Stream;
 use crate::robot::Robot;
 
 mod renewal;

@@ -1,7 +1,7 @@
 //! Configurations, velocities and torques: what a call's arrays must look like.
 
 use super::description::JointKind;
-use super::tree::Robot;
+use super::robot::Robot;
 use crate::error::{Error, Result};
 
 /// Unit quaternions and (cos, sin) pairs may be off by this much (squared norm); they are normalised.

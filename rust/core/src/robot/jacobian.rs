@@ -3,9 +3,10 @@
 use nalgebra::{DMatrix, Vector3};
 
 use super::kinematics::Kinematics;
-use super::motion::{motion_axis, split};
-use super::tree::Robot;
+use super::robot::Robot;
 use crate::error::{Error, Result};
+use crate::robot::joint_axis::motion_axis;
+use crate::spatial::vector::split;
 use crate::spatial::Pose;
 
 impl Robot {

@@ -6,7 +6,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::description::JointKind;
-use super::tree::{Robot, WORLD};
+use super::robot::{Robot, WORLD};
 use crate::spatial::Pose;
 
 /// A body's pose and velocity.

@@ -1,24 +1,19 @@
 //! The robot: description, tree, kinematics and dynamics.
 
 pub(crate) mod configuration;
-mod description;
-mod forward_dynamics;
-mod inertia;
-mod inverse_dynamics;
+pub(crate) mod description;
+mod dynamics;
 mod jacobian;
+pub(crate) mod joint_axis;
 mod kinematics;
 mod link;
-mod mass_matrix;
-mod momentum;
-pub(crate) mod motion;
-mod tree;
-mod urdf;
+#[allow(clippy::module_inception)] // the room is called after what is in it
+mod robot;
 
+pub use crate::load::urdf::{from_urdf, UrdfGeometry, UrdfOptions};
 pub use configuration::LARGEST;
 pub use description::{JointDescription, JointKind, LinkDescription, RobotDescription};
-pub use forward_dynamics::ForwardDynamics;
+pub use dynamics::{ForwardDynamics, MomentumPass};
 pub use kinematics::{BodyState, Kinematics};
 pub use link::Link;
-pub use momentum::MomentumPass;
-pub use tree::{Robot, WORLD};
-pub use urdf::{from_urdf, UrdfGeometry, UrdfOptions};
+pub use robot::{Robot, WORLD};

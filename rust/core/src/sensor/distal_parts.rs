@@ -7,7 +7,7 @@ use crate::robot::{Robot, WORLD};
 
 /// The part of a body that loads one sensor directly; about the body's origin, in its axes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct DistalPart {
+pub(crate) struct DistalPart {
     pub sensor: usize,
     pub body: usize,
     pub mass: f64,
@@ -31,7 +31,7 @@ impl DistalPart {
 
 /// All parts, bodies near the base first. What a body's links do not add up to goes to the link that its joint moves,
 /// so that a body split by no sensor counts as the robot has it.
-pub(super) fn distal_parts(robot: &Robot, tree: &SensorTree) -> Vec<DistalPart> {
+pub(crate) fn distal_parts(robot: &Robot, tree: &SensorTree) -> Vec<DistalPart> {
     let links = robot.links();
     let mut parts = vec![];
     for index in WORLD + 1..robot.body_count() {

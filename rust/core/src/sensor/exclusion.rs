@@ -3,8 +3,9 @@
 use nalgebra::Vector6;
 
 use super::sensor_tree::SensorTree;
-use crate::robot::motion::{motion_axis, split, stack};
+use crate::robot::joint_axis::motion_axis;
 use crate::robot::{Kinematics, Robot};
+use crate::spatial::vector::{split, stack};
 
 /// Writes `J(S)^T F_ext,S`, `(nv,)`, for a wrench at the sensor's origin, world axes.
 ///

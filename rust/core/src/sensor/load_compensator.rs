@@ -8,8 +8,8 @@ use super::distal_parts::{distal_parts, DistalPart};
 use super::force_torque_sensor::ForceTorqueSensor;
 use super::sensor_tree::SensorTree;
 use crate::error::{Error, Result};
-use crate::robot::motion::stack;
 use crate::robot::{JointKind, Kinematics, Robot, LARGEST, WORLD};
+use crate::spatial::vector::stack;
 
 /// A force and its moment about the reference origin of [`Kinematics`].
 #[derive(Debug, Clone, Copy)]

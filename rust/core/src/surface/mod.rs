@@ -4,31 +4,16 @@
 //! boxes, cylinders, spheres and capsules are exact. Everything is in the link's frame, in metres, and immutable.
 
 mod build;
-mod bvh;
-mod closest;
-mod components;
-mod crowded;
-mod descent;
-mod line;
-mod load;
-mod mesh;
-mod nesting;
+pub(crate) mod mesh;
 mod part;
 mod primitive;
-mod rays;
-mod repair;
+mod query;
 mod sample;
-mod slivers;
-mod tree;
-mod triangle;
-mod union;
-mod weld;
-mod winding;
 
 #[cfg(test)]
 mod tests;
 
-pub use load::{load_mesh, VerticesAndTriangles};
+pub use crate::load::mesh_file::{load_mesh, VerticesAndTriangles};
 pub use part::{Geometry, Part};
 
 use nalgebra::Vector3;
@@ -205,7 +190,7 @@ impl Surface {
         t_min: f64,
         hits: &mut Vec<RayHit>,
     ) -> bool {
-        rays::cast(&self.solids, (&self.center, self.radius), origin, direction, t_min, hits)
+        query::rays::cast(&self.solids, (&self.center, self.radius), origin, direction, t_min, hits)
     }
 
     /// `n` points, uniform by area over what is exposed: points strictly inside another closed part, or on a face

@@ -6,7 +6,7 @@ use super::mesh::Mesh;
 use super::part::Solid;
 use super::primitive::Placed;
 use super::{ClosestPoint, SurfacePoint};
-use crate::random::Stream;
+use crate::math::random::Stream;
 
 /// Attempts per point asked for, before giving up on a surface that is almost all hidden.
 const ATTEMPTS: u64 = 1000;

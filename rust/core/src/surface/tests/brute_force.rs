@@ -3,7 +3,8 @@
 use nalgebra::Vector3;
 
 use super::meshes::{block, icosphere, join, surface, torus, Random, Soup};
-use crate::surface::{triangle, Surface};
+use crate::surface::query::triangle;
+use crate::surface::Surface;
 
 fn meshes() -> Vec<Soup> {
     vec![

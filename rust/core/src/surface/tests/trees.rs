@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 
 use super::meshes::icosphere;
-use crate::surface::bvh::Branch;
-use crate::surface::tree::{collapse, Child, Node, Tree, MAX_DEPTH, STACK};
+use crate::surface::mesh::bvh::Branch;
+use crate::surface::mesh::bvh4::{collapse, Child, Node, Tree, MAX_DEPTH, STACK};
 
 type Triangle = [Vector3<f64>; 3];
 

@@ -1,0 +1,150 @@
+//! A robot from a URDF file: the same robot as the Python package's loader gives, without Python.
+//!
+//! The file is checked first, element by element ([`guard`]), and rewritten without what is not needed; `urdf-rs`
+//! reads that text. Order and meaning of joints, bodies and links are Pinocchio's.
+
+mod build;
+mod guard;
+mod inertia;
+mod lock;
+mod meshes;
+mod numbers;
+mod oddities;
+mod shapes;
+mod singular;
+mod text;
+mod tree;
+
+#[cfg(test)]
+mod tests;
+
+use std::path::{Path, PathBuf};
+
+use nalgebra::Vector3;
+
+use crate::error::{Error, Result};
+use crate::robot::description::RobotDescription;
+use crate::robot::Robot;
+
+/// Which of a URDF's shapes make the surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum UrdfGeometry {
+    /// `<collision>` elements.
+    #[default]
+    Collision,
+    /// `<visual>` elements.
+    Visual,
+}
+
+impl UrdfGeometry {
+    fn tag(self) -> &'static str {
+        match self {
+            UrdfGeometry::Collision => "collision",
+            UrdfGeometry::Visual => "visual",
+        }
+    }
+}
+
+/// How to read a URDF.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UrdfOptions {
+    /// Folders that `package://` names and mesh files may come from, besides the URDF's own.
+    pub package_dirs: Vec<PathBuf>,
+    /// Whether the root link moves freely; its joint is then the first, named `root_joint`.
+    pub floating_base: bool,
+    /// Joints to hold at a position [rad or m], or at neutral. Of a joint named twice the last counts.
+    pub locked_joints: Vec<(String, Option<f64>)>,
+    /// Which shapes make the surface.
+    pub geometry: UrdfGeometry,
+    /// Gravity in the world frame [m/s^2].
+    pub gravity: Vector3<f64>,
+}
+
+impl Default for UrdfOptions {
+    /// A fixed base, no locked joints, collision geometry, gravity along -z.
+    fn default() -> Self {
+        Self {
+            package_dirs: Vec::new(),
+            floating_base: false,
+            locked_joints: Vec::new(),
+            geometry: UrdfGeometry::Collision,
+            gravity: Vector3::new(0.0, 0.0, -9.81),
+        }
+    }
+}
+
+/// Reads a URDF file.
+///
+/// Joints are ordered as in the Pinocchio model of the same file: depth-first, a link's child joints by name. A body
+/// is all that is fixed to one joint, also through locked joints; what is fixed to the world has no inertia. Links
+/// come depth-first and keep their frames. Mimic joints stay independent. Mesh files come from the URDF's folder and
+/// `package_dirs` only, symbolic links resolved.
+///
+/// # Errors
+/// [`Error::Model`] for the file and its links and joints, [`Error::Geometry`] for shapes and mesh files,
+/// [`Error::Input`] for the options; each names the element and says what would be right.
+///
+/// # Example
+/// ```
+/// use contactsense::robot::{from_urdf, UrdfOptions};
+///
+/// let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../python/contactsense/descriptions/iiwa14.urdf");
+/// let arm = from_urdf(path, &UrdfOptions::default())?;
+/// assert_eq!(arm.joints.len(), 7);
+/// assert!(arm.links.iter().any(|link| !link.geometry.is_empty()));
+/// # Ok::<(), contactsense::Error>(())
+/// ```
+pub fn from_urdf(path: impl AsRef<Path>, options: &UrdfOptions) -> Result<RobotDescription> {
+    let path = path.as_ref();
+    if !options.gravity.iter().all(|x| x.is_finite()) {
+        return Err(Error::Input(format!(
+            "gravity must be 3 finite numbers [m/s^2], not {:?}",
+            options.gravity.as_slice()
+        )));
+    }
+    let meshes = meshes::MeshFinder::new(path, &options.package_dirs)?;
+    let mut checked = guard::read(path, options.geometry)?;
+    let bad_shape = checked.bad_shape.take();
+    let tree = tree::Tree::new(checked)?;
+    tree.check_reserved_names(options.floating_base)?;
+    let mut warnings = oddities::oddities(&tree);
+    warnings.extend(inertia::check_links(&tree)?);
+    let locked = lock::positions(&tree, &options.locked_joints)?;
+    let mut description = build::bodies(&tree, &locked, options.floating_base)?;
+    if let Some(error) = bad_shape {
+        return Err(error);
+    }
+    for (link, visit) in description.links.iter_mut().zip(&tree.visits) {
+        link.geometry = shapes::parts(&tree.robot.links[visit.link], options.geometry, &meshes)?;
+    }
+    inertia::check_bodies(&description)?;
+    warnings.extend(lock::outside_limits(&tree, &locked));
+    warnings.extend(singular::check_mass_matrix(&description)?);
+    if description.links.iter().all(|link| link.geometry.is_empty()) {
+        let tag = options.geometry.tag();
+        warnings.push(format!("No link has <{tag}> geometry, so the robot has no surface to be touched"));
+    }
+    description.gravity = options.gravity;
+    description.warnings = warnings;
+    Ok(description)
+}
+
+impl Robot {
+    /// A robot from a URDF file; see [`from_urdf`].
+    ///
+    /// # Errors
+    /// As [`from_urdf`] and [`Robot::new`].
+    pub fn from_urdf(path: impl AsRef<Path>, options: &UrdfOptions) -> Result<Robot> {
+        Robot::new(from_urdf(path, options)?)
+    }
+}
+
+/// Names for a message, quoted; a long list is cut and says by how many.
+fn name_list<S: AsRef<str>>(names: &[S]) -> String {
+    const SHOWN: usize = 12;
+    let shown: Vec<String> = names.iter().take(SHOWN).map(|name| format!("'{}'", name.as_ref())).collect();
+    match names.len().checked_sub(SHOWN) {
+        None | Some(0) => shown.join(", "),
+        Some(more) => format!("{} and {more} more", shown.join(", ")),
+    }
+}

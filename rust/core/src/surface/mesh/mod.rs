@@ -1,0 +1,97 @@
+//! A repaired mesh with its search tree.
+
+pub(super) mod bvh;
+pub(crate) mod bvh4;
+pub(crate) mod repair;
+
+use nalgebra::Vector3;
+
+use self::bvh4::{Child, Tree};
+use super::query::descent::Neighbours;
+use super::ClosestPoint;
+use crate::{Error, Result};
+
+#[derive(Debug, Clone)]
+pub(crate) struct Mesh {
+    pub vertices: Vec<Vector3<f64>>,
+    pub triangles: Vec<[u32; 3]>,
+    /// Unit normals of the triangles.
+    pub normals: Vec<Vector3<f64>>,
+    /// Corners in leaf order, and which triangle they are.
+    pub corners: Vec<[Vector3<f64>; 3]>,
+    pub order: Vec<u32>,
+    pub tree: Tree,
+    pub neighbours: Neighbours,
+    pub closed: bool,
+}
+
+impl Mesh {
+    /// Repairs and indexes a mesh; what was odd goes to `remarks`.
+    pub fn new(
+        vertices: Vec<Vector3<f64>>,
+        triangles: Vec<[u32; 3]>,
+        remarks: &mut Vec<String>,
+    ) -> Result<Self> {
+        check(&vertices, &triangles)?;
+        let repaired = repair::repair(vertices, triangles, remarks)?;
+        let (vertices, triangles) = (repaired.vertices, repaired.triangles);
+        let all: Vec<[Vector3<f64>; 3]> = triangles.iter().map(|t| t.map(|v| vertices[v as usize])).collect();
+        let normals = all
+            .iter()
+            .map(|[a, b, c]| (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_else(Vector3::z))
+            .collect();
+        let (tree, order) = Tree::new(&all);
+        let corners = order.iter().map(|&id| all[id as usize]).collect();
+        let neighbours = Neighbours::new(&vertices, &triangles);
+        Ok(Mesh { vertices, triangles, normals, corners, order, tree, neighbours, closed: repaired.closed })
+    }
+
+    /// Whether `p` lies inside, by more than `tolerance`. The mesh must be closed.
+    pub fn contains(&self, p: &Vector3<f64>, tolerance: f64) -> bool {
+        if (p - self.tree.center).norm() > self.tree.radius {
+            return false;
+        }
+        // Any direction would do; this one is in no plane that CAD files favour.
+        let direction = Vector3::new(0.537_725_1, 0.642_913_7, 0.545_305_9).normalize();
+        let mut depth = 0;
+        self.cross(p, &direction, 0.0, &mut |_, _, entering| {
+            depth += if entering { -1 } else { 1 };
+            true
+        });
+        if depth <= 0 {
+            return false;
+        }
+        let mut nearest =
+            ClosestPoint { point: *p, normal: Vector3::zeros(), distance: f64::INFINITY, triangle: -1 };
+        self.closest_point(p, None, 0, &mut nearest);
+        nearest.distance > tolerance
+    }
+}
+
+fn check(vertices: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Result<()> {
+    if vertices.is_empty() || triangles.is_empty() {
+        return Err(Error::Geometry(format!(
+            "mesh: {} vertices and {} triangles; it needs at least one triangle",
+            vertices.len(),
+            triangles.len()
+        )));
+    }
+    if triangles.len() >= Child::MAX_TRIANGLES {
+        return Err(Error::Geometry(format!("mesh: {} triangles are too many", triangles.len())));
+    }
+    if let Some(i) = vertices.iter().position(|v| !v.iter().all(|x| x.is_finite() && x.abs() < 1e15)) {
+        return Err(Error::Geometry(format!(
+            "mesh: vertex {i} is {:?}; it must be finite",
+            vertices[i].as_slice()
+        )));
+    }
+    let bad = triangles.iter().position(|t| t.iter().any(|&v| v as usize >= vertices.len()));
+    if let Some(i) = bad {
+        return Err(Error::Geometry(format!(
+            "mesh: triangle {i} is {:?}, but there are only {} vertices",
+            triangles[i],
+            vertices.len()
+        )));
+    }
+    Ok(())
+}
