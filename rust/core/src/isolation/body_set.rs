@@ -3,7 +3,8 @@
 
 use super::found::Scene;
 use super::region::Region;
-use super::wrench::{jacobian_column, WrenchEstimate, ORIGIN};
+use super::wrench::{WrenchEstimate, ORIGIN};
+use crate::robot::jacobian::jacobian_column;
 use crate::robot::Robot;
 
 /// A set of bodies, grown from a contact body away from the base.

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::region::Region;
-use super::wrench::{for_each_column, jacobian_column};
+use crate::robot::jacobian::{for_each_column, jacobian_column};
 use crate::robot::{Kinematics, Robot};
 use crate::spatial::vector::split;
 

@@ -48,12 +48,11 @@ pub(super) fn estimate_pair(
 ) -> Option<PairEstimate> {
     let mut parts = [WrenchRows::new(), WrenchRows::new(), WrenchRows::new()];
     rows.push_root(&mut parts[Side::Both as usize]);
-    let chains = bodies.map(|body| robot.chain(body));
     for joint in region.chain(robot, bodies[0]) {
-        let side = if chains[1].contains(&joint) { Side::Both } else { Side::First };
+        let side = if robot.moves(joint, bodies[1]) { Side::Both } else { Side::First };
         rows.push_joint(robot, joint, &mut parts[side as usize]);
     }
-    for joint in region.chain(robot, bodies[1]).filter(|joint| !chains[0].contains(joint)) {
+    for joint in region.chain(robot, bodies[1]).filter(|joint| !robot.moves(*joint, bodies[0])) {
         rows.push_joint(robot, joint, &mut parts[Side::Second as usize]);
     }
     let count: usize = parts.iter().map(|part| part.count).sum();

@@ -6,8 +6,9 @@ use super::force::{explain_force, identify_force};
 use super::found::Found;
 use super::isolator::{ContactIsolator, CONTRADICTION};
 use super::result::{Candidate, Contact};
-use super::wrench::{for_each_column, WrenchEstimate, ORIGIN};
+use super::wrench::{WrenchEstimate, ORIGIN};
 use crate::math::chi_square::upper_limit;
+use crate::robot::jacobian::for_each_column;
 use crate::robot::{Kinematics, Robot};
 use crate::spatial::vector::stack;
 

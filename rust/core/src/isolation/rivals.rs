@@ -4,7 +4,8 @@
 use super::isolator::ContactIsolator;
 use super::line::{best_first, farthest_entry, is_covered};
 use super::result::{Candidate, Isolation};
-use super::wrench::{jacobian_column, WrenchEstimate, DEVIATION, ORIGIN};
+use super::wrench::{WrenchEstimate, DEVIATION, ORIGIN};
+use crate::robot::jacobian::jacobian_column;
 use crate::robot::Kinematics;
 
 /// A hypothesis is unlikely if its chi-square exceeds the best one's by this: a likelihood ratio of 100.
@@ -85,9 +86,8 @@ impl ContactIsolator {
             .rev()
             .find(|joint| region.joints[*joint] && !robot.velocity_range(*joint).all(is_noise));
         for other in 1..robot.body_count() {
-            let chain = robot.chain(other);
-            excluded[other] = last.is_some_and(|joint| !chain.contains(&joint));
-            if other > body && chain.contains(&body) {
+            excluded[other] = last.is_some_and(|joint| !robot.moves(joint, other));
+            if other > body && robot.moves(body, other) {
                 let feels = |(column, k): (usize, usize)| {
                     let axis = jacobian_column(robot, kinematics, other, column, &ORIGIN);
                     wrench.innovation(&axis, residual[k], threshold[k]).powi(2) <= limit

@@ -3,7 +3,8 @@
 use nalgebra::{SMatrix, Vector6};
 
 use super::region::Region;
-use super::wrench::{jacobian_column, WrenchEstimate, ORIGIN};
+use super::wrench::{WrenchEstimate, ORIGIN};
+use crate::robot::jacobian::jacobian_column;
 use crate::robot::{Kinematics, Robot};
 
 /// Balances moments against forces in rank decisions: a typical lever arm [m].

@@ -207,8 +207,7 @@ impl SeveralContacts {
         let Scene { robot, region, .. } = scene;
         let tips = self.tips.tips();
         let tip = tips[index];
-        let shared =
-            |joint: &usize| tips.iter().any(|other| *other != tip && robot.chain(*other).contains(joint));
+        let shared = |joint: &usize| tips.iter().any(|other| *other != tip && robot.moves(*joint, *other));
         let mut wrench_rows = WrenchRows::new();
         for joint in region.chain(robot, tip).rev().take_while(|joint| !shared(joint)) {
             rows.push_joint(robot, joint, &mut wrench_rows);
@@ -349,7 +348,7 @@ fn rest_is_explained(scene: Scene, rows: &TorqueRows, before: usize, tip: usize)
     }
     let total = WrenchEstimate::from_rows(wrench_rows);
     let explained = |k: usize| (total.torque_on(&rows.axes[k]) - rows.torque[k]).abs() <= rows.tolerance[k];
-    let behind = |joint: &usize| !robot.chain(before).contains(joint);
+    let behind = |joint: &usize| !robot.moves(*joint, before);
     let mut rest = scene.region.chain(robot, tip).filter(behind);
     total.rank < 6 || rest.all(|joint| robot.velocity_range(joint).all(explained))
 }

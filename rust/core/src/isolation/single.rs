@@ -81,9 +81,7 @@ impl ContactIsolator {
     /// a force on `tip`, where such a coincidence has no reason (with more components open, it often has).
     fn isolate_behind(&mut self, kinematics: &Kinematics, tip: usize) -> bool {
         for body in tip + 1..self.robot.body_count() {
-            if !self.robot.chain(body).contains(&tip)
-                || self.region.links_of(&self.robot, body).next().is_none()
-            {
+            if !self.robot.moves(tip, body) || self.region.links_of(&self.robot, body).next().is_none() {
                 continue;
             }
             let wrench = self.estimate(kinematics, body);

@@ -185,7 +185,7 @@ fn for_each_torque(
 ) {
     let robot = scene.robot;
     for joint in (1..robot.body_count()).filter(|joint| scene.region.joints[*joint]) {
-        let on = |body: usize| robot.chain(body).contains(&joint);
+        let on = |body: usize| robot.moves(joint, body);
         if bodies.clone().into_iter().any(|body| on(*body.borrow())) {
             for k in robot.velocity_range(joint) {
                 each(joint, k, &on);

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
 
 use super::rows::{WrenchRows, LEVER};
-use crate::robot::joint_axis::motion_axis;
+use crate::robot::jacobian::for_each_column;
 use crate::robot::{Kinematics, Robot};
 use crate::spatial::vector::{split, stack};
 
@@ -31,35 +31,6 @@ pub(super) struct WrenchEstimate {
     redundant: usize,
     /// Standard deviation of a torque in tolerances.
     deviation: f64,
-}
-
-/// Velocity at `reference` and rotation that one unit of a joint's velocity gives the bodies behind it.
-#[inline]
-pub(super) fn jacobian_column(
-    robot: &Robot,
-    kinematics: &Kinematics,
-    body: usize,
-    column: usize,
-    reference: &Vector3<f64>,
-) -> Vector6<f64> {
-    let (linear, angular) = split(&motion_axis(robot.bodies[body].kind, &kinematics.bodies[body], column));
-    stack(&(linear + angular.cross(reference)), &angular)
-}
-
-/// Calls `each` with every velocity variable from the base to `body` and its column at `reference`.
-#[inline]
-pub(super) fn for_each_column(
-    robot: &Robot,
-    kinematics: &Kinematics,
-    body: usize,
-    reference: &Vector3<f64>,
-    mut each: impl FnMut(usize, Vector6<f64>),
-) {
-    for &joint in robot.chain(body) {
-        for (column, k) in robot.velocity_range(joint).enumerate() {
-            each(k, jacobian_column(robot, kinematics, joint, column, reference));
-        }
-    }
 }
 
 /// Least squares over the chain of `body`, each torque weighted by its threshold.

@@ -1,13 +1,42 @@
 //! Geometric Jacobians: linear rows first, world axes.
 
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::{DMatrix, Vector3, Vector6};
 
 use super::kinematics::Kinematics;
 use super::robot::Robot;
 use crate::error::{Error, Result};
 use crate::robot::joint_axis::motion_axis;
-use crate::spatial::vector::split;
+use crate::spatial::vector::{split, stack};
 use crate::spatial::Pose;
+
+/// Velocity at `reference` and rotation that one unit of a joint's velocity gives the bodies behind it.
+#[inline]
+pub(crate) fn jacobian_column(
+    robot: &Robot,
+    kinematics: &Kinematics,
+    body: usize,
+    column: usize,
+    reference: &Vector3<f64>,
+) -> Vector6<f64> {
+    let (linear, angular) = split(&motion_axis(robot.bodies[body].kind, &kinematics.bodies[body], column));
+    stack(&(linear + angular.cross(reference)), &angular)
+}
+
+/// Calls `each` with every velocity variable from the base to `body` and its column at `reference`.
+#[inline]
+pub(crate) fn for_each_column(
+    robot: &Robot,
+    kinematics: &Kinematics,
+    body: usize,
+    reference: &Vector3<f64>,
+    mut each: impl FnMut(usize, Vector6<f64>),
+) {
+    for &joint in robot.chain(body) {
+        for (column, k) in robot.velocity_range(joint).enumerate() {
+            each(k, jacobian_column(robot, kinematics, joint, column, reference));
+        }
+    }
+}
 
 impl Robot {
     /// `J` with `(velocity of the point; angular velocity) = J v`, `(6, nv)`.
@@ -25,16 +54,9 @@ impl Robot {
         };
         let from_origin = point - kinematics.origin;
         let mut matrix = DMatrix::zeros(6, self.nv());
-        for &index in self.chain(self.links[link].body) {
-            let body = &self.bodies[index];
-            for column in 0..body.kind.nv() {
-                let (linear, angular) = split(&motion_axis(body.kind, &kinematics.bodies[index], column));
-                let linear = linear + angular.cross(&from_origin);
-                let k = body.idx_v + column;
-                matrix.fixed_view_mut::<3, 1>(0, k).copy_from(&linear);
-                matrix.fixed_view_mut::<3, 1>(3, k).copy_from(&angular);
-            }
-        }
+        for_each_column(self, &kinematics, self.links[link].body, &from_origin, |k, column| {
+            matrix.column_mut(k).copy_from(&column);
+        });
         Ok(matrix)
     }
 

@@ -1,9 +1,10 @@
 //! The robot: description, tree, kinematics and dynamics.
 
+mod ancestry;
 pub(crate) mod configuration;
 pub(crate) mod description;
 mod dynamics;
-mod jacobian;
+pub(crate) mod jacobian;
 pub(crate) mod joint_axis;
 mod kinematics;
 mod link;

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::ancestry::Ancestry;
 use super::configuration::LARGEST;
 use super::description::{JointDescription, JointKind, RobotDescription};
 use super::link::{check_link_tree, Link};
@@ -40,6 +41,7 @@ pub struct Robot {
     touchable: Vec<usize>,
     body_links: Vec<Vec<usize>>,
     chains: Vec<Vec<usize>>,
+    ancestry: Ancestry,
     nq: usize,
     nv: usize,
     warnings: Vec<String>,
@@ -188,6 +190,7 @@ impl Robot {
             link_index,
             touchable,
             body_links,
+            ancestry: Ancestry::new(&chains),
             chains,
             nq,
             nv,
@@ -252,6 +255,12 @@ impl Robot {
     /// The bodies from the base to `body`, both included, the world not.
     pub fn chain(&self, body: usize) -> &[usize] {
         &self.chains[body]
+    }
+
+    /// Whether the joint of body `joint` moves `body`: whether it is on the way from the base to there.
+    #[inline]
+    pub fn moves(&self, joint: usize, body: usize) -> bool {
+        self.ancestry.moves(joint, body)
     }
 
     /// Number of bodies, the world included.

@@ -1,9 +1,9 @@
 //! The torque of an external wrench at a sensor (Vorndamme 2017, eq. 20).
 
-use nalgebra::Vector6;
+use nalgebra::{Vector3, Vector6};
 
 use super::sensor_tree::SensorTree;
-use crate::robot::joint_axis::motion_axis;
+use crate::robot::jacobian::for_each_column;
 use crate::robot::{Kinematics, Robot};
 use crate::spatial::vector::{split, stack};
 
@@ -21,11 +21,7 @@ pub fn sensor_torque(
     torque.fill(0.0);
     let (force, moment) = split(wrench);
     let about_origin = stack(&force, &(moment + tree.position(kinematics, sensor).cross(&force)));
-    for &index in robot.chain(tree.body(sensor)) {
-        let body = &robot.bodies[index];
-        for column in 0..body.kind.nv() {
-            let axis = motion_axis(body.kind, &kinematics.bodies[index], column);
-            torque[body.idx_v + column] = axis.dot(&about_origin);
-        }
-    }
+    for_each_column(robot, kinematics, tree.body(sensor), &Vector3::zeros(), |k, column| {
+        torque[k] = column.dot(&about_origin);
+    });
 }

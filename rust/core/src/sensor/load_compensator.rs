@@ -51,7 +51,7 @@ impl LoadCompensator {
     pub fn new(robot: Arc<Robot>, sensors: &[ForceTorqueSensor]) -> Result<Self> {
         let tree = SensorTree::new(&robot, sensors)?;
         let parts = distal_parts(&robot, &tree);
-        let moves = |body: &usize| parts.iter().any(|part| robot.chain(part.body).contains(body));
+        let moves = |body: &usize| parts.iter().any(|part| robot.moves(*body, part.body));
         let zero = Vector3::zeros();
         Ok(Self {
             kinematics: Kinematics::new(&robot),
