@@ -63,7 +63,7 @@ WRONG = {
     "link: expected a string, got 1": lambda r: cs.ForceTorqueSensor("wrist", 1),
     "convention: expected a string": lambda r: cs.ForceTorqueSensor("wrist", "hand", convention=1),
     "geometry": lambda r: cs.Robot.from_urdf("x.urdf", geometry=5),
-    "geometry must": lambda r: cs.Robot.from_urdf("x.urdf", geometry=np.zeros(2)),
+    "geometry: must": lambda r: cs.Robot.from_urdf("x.urdf", geometry=np.zeros(2)),
     "floating_base": lambda r: cs.Robot.from_urdf("x.urdf", floating_base="no"),
     "package_dirs": lambda r: cs.Robot.from_urdf("x.urdf", package_dirs=7),
 }

@@ -101,9 +101,9 @@ def test_bad_shape_is_refused_by_link(body, message, tmp_path):
     [
         ({"geometry": "both"}, "'collision' or 'visual'"),
         ({"geometry": None}, "'collision' or 'visual'"),
-        ({"gravity": (0, 0)}, "gravity must be 3"),
-        ({"gravity": (0, 0, math.nan)}, "gravity must be 3"),
-        ({"gravity": "down"}, "gravity must be 3"),
+        ({"gravity": (0, 0)}, "gravity: must be 3"),
+        ({"gravity": (0, 0, math.nan)}, "gravity: must be 3"),
+        ({"gravity": "down"}, "gravity: must be 3"),
         ({"package_dirs": 3}, "package_dirs"),
         ({"package_dirs": [3]}, "package_dirs"),
     ],
@@ -115,7 +115,7 @@ def test_bad_argument_is_named(arguments, message, tmp_path):
 
 @pytest.mark.parametrize("path", [3, None, b"arm.urdf", "arms/\0/arm.urdf", "\0"])
 def test_bad_path_is_an_input_error(path):
-    with pytest.raises(InputError, match="path must be"):
+    with pytest.raises(InputError, match="path: must be"):
         describe_urdf(path)
 
 

@@ -49,13 +49,13 @@ def describe_urdf(
     if not isinstance(floating_base, bool | np.bool_):
         raise InputError(f"floating_base must be True or False, not {floating_base!r}")
     if not isinstance(geometry, str) or geometry not in ("collision", "visual"):
-        raise InputError(f"geometry must be 'collision' or 'visual', not {geometry!r}")
+        raise InputError(f"geometry: must be 'collision' or 'visual', not {geometry!r}")
     acceleration = _gravity(gravity)
     try:
         file = Path(path)
         file.resolve()
     except (TypeError, ValueError, OSError, RuntimeError) as cause:
-        raise InputError(f"path must be a path to a URDF file, not {path!r}") from cause
+        raise InputError(f"path: must be a path to a URDF file, not {path!r}") from cause
     meshes = MeshFinder(file, package_dirs)
     tree = read_urdf(file)
     _check_reserved_names(tree, floating_base)
@@ -92,9 +92,9 @@ def _gravity(gravity: ArrayLike) -> FloatArray:
     try:
         vector = np.array(gravity, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as cause:
-        raise InputError(f"gravity must be 3 finite numbers [m/s^2], not {gravity!r}") from cause
+        raise InputError(f"gravity: must be 3 finite numbers [m/s^2], not {gravity!r}") from cause
     if vector.shape != (3,) or not np.isfinite(vector).all():
-        raise InputError(f"gravity must be 3 finite numbers [m/s^2], not {gravity!r}")
+        raise InputError(f"gravity: must be 3 finite numbers [m/s^2], not {gravity!r}")
     return vector
 
 

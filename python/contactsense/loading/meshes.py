@@ -23,7 +23,7 @@ class MeshFinder:
             folders = [(Path(entry).absolute().name, Path(entry).resolve()) for entry in given]
         except (TypeError, ValueError, OSError, RuntimeError) as cause:
             raise InputError(
-                f"package_dirs must be a folder or folders that hold packages: {cause}"
+                f"package_dirs: must be a folder or folders that hold packages: {cause}"
             ) from cause
         self._folder = urdf.parent.resolve()
         # A package's name is that of its folder, also where a link leads to it.

@@ -28,7 +28,7 @@ fn main() -> Result<()> {
     for joint in q.iter_mut().filter(|joint| **joint == 0.0) {
         *joint = 0.4;
     }
-    let no_surface = || Error::Input("this robot has no surface to be touched".into());
+    let no_surface = || Error::input("robot", "has no surface that can be in contact");
     let &link = robot.touchable_links().iter().nth_back(1).ok_or_else(no_surface)?;
     let surface = robot.links()[link].surface.as_ref().ok_or_else(no_surface)?;
     let pose = robot.link_pose(&q, link)?;

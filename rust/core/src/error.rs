@@ -2,6 +2,7 @@
 
 /// What went wrong. The message names the thing and says what would be right.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
     /// The robot's description cannot be used.
     #[error("{0}")]
@@ -10,11 +11,24 @@ pub enum Error {
     #[error("{0}")]
     Geometry(String),
     /// An argument of a call cannot be used; the object is unchanged.
-    #[error("{0}")]
-    Input(String),
+    #[error("{argument}: {problem}")]
+    #[non_exhaustive]
+    Input {
+        /// Name of the argument or option.
+        argument: String,
+        /// What is wrong with it, and what would be right.
+        problem: String,
+    },
     /// There is not enough memory for what was asked for.
     #[error("{0}")]
     Memory(String),
+}
+
+impl Error {
+    /// An argument that cannot be used, and why.
+    pub fn input(argument: impl Into<String>, problem: impl Into<String>) -> Self {
+        Error::Input { argument: argument.into(), problem: problem.into() }
+    }
 }
 
 /// Shorthand for results of this crate.

@@ -83,18 +83,22 @@ pub fn to_python(py: Python<'_>, error: Error) -> PyErr {
         Ok(classes) => classes,
         Err(error) => return error,
     };
-    let (class, text) = match error {
-        Error::Model(text) => (&classes.model, text),
-        Error::Geometry(text) => (&classes.geometry, text),
-        Error::Input(text) => (&classes.input, text),
+    let class = match error {
+        Error::Model(_) => &classes.model,
+        Error::Geometry(_) => &classes.geometry,
+        Error::Input { .. } => &classes.input,
         Error::Memory(text) => return PyMemoryError::new_err(text),
+        _ => &classes.root,
     };
-    PyErr::from_type(class.bind(py).clone(), text)
+    PyErr::from_type(class.bind(py).clone(), error.to_string())
 }
 
 /// An `InputError`.
 pub fn input(py: Python<'_>, text: String) -> PyErr {
-    to_python(py, Error::Input(text))
+    match classes(py) {
+        Ok(classes) => PyErr::from_type(classes.input.bind(py).clone(), text),
+        Err(error) => error,
+    }
 }
 
 /// Whether what reading an argument raised is the argument's fault: no `KeyboardInterrupt` or another exception that is

@@ -27,7 +27,7 @@ pub fn _robot_from_urdf(
         "collision" => UrdfGeometry::Collision,
         "visual" => UrdfGeometry::Visual,
         other => {
-            return Err(input(py, format!("geometry must be 'collision' or 'visual', not '{other}'")));
+            return Err(input(py, format!("geometry: must be 'collision' or 'visual', not '{other}'")));
         }
     };
     let options = UrdfOptions {

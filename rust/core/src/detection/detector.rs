@@ -43,9 +43,10 @@ impl Detector {
     ) -> Result<Self> {
         let threshold = check_threshold(&robot, threshold)?;
         if !(hold_time.is_finite() && hold_time >= 0.0) {
-            return Err(Error::Input(format!(
-                "hold_time: must be finite and not negative [s], not {hold_time}"
-            )));
+            return Err(Error::input(
+                "hold_time",
+                format!("must be finite and not negative [s], not {hold_time}"),
+            ));
         }
         Ok(Self {
             remaining: vec![-1.0; robot.nv()],
@@ -130,7 +131,7 @@ impl Detector {
 pub(crate) fn check_threshold(robot: &Robot, threshold: &[f64]) -> Result<Vec<f64>> {
     let threshold = robot.per_velocity("torque_threshold", threshold)?;
     if threshold.iter().any(|x| *x <= 0.0) {
-        return Err(Error::Input("torque_threshold: must be positive [Nm]".into()));
+        return Err(Error::input("torque_threshold", "must be positive [Nm]"));
     }
     Ok(threshold)
 }
@@ -138,7 +139,7 @@ pub(crate) fn check_threshold(robot: &Robot, threshold: &[f64]) -> Result<Vec<f6
 /// One threshold for all components of all sensors, six for each sensor, or six times the number of sensors.
 pub(crate) fn check_wrench_threshold(sensors: &SensorTree, threshold: &[f64]) -> Result<Vec<Vector6<f64>>> {
     if threshold.iter().any(|x| !(x.is_finite() && *x > 0.0)) {
-        return Err(Error::Input("wrench_threshold: must be positive and finite [N, Nm]".into()));
+        return Err(Error::input("wrench_threshold", "must be positive and finite [N, Nm]"));
     }
     match threshold.len() {
         1 => Ok(vec![Vector6::repeat(threshold[0]); sensors.len()]),
@@ -146,9 +147,9 @@ pub(crate) fn check_wrench_threshold(sensors: &SensorTree, threshold: &[f64]) ->
         count if count == 6 * sensors.len() && count > 0 => {
             Ok(threshold.chunks_exact(6).map(Vector6::from_column_slice).collect())
         }
-        count => Err(Error::Input(format!(
-            "wrench_threshold: expected one number, 6, or shape ({}, 6), got {count} numbers",
-            sensors.len()
-        ))),
+        count => Err(Error::input(
+            "wrench_threshold",
+            format!("expected one number, 6, or shape ({}, 6), got {count} numbers", sensors.len()),
+        )),
     }
 }

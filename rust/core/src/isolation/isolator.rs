@@ -111,12 +111,13 @@ impl ContactIsolator {
     pub fn new(robot: Arc<Robot>, options: &IsolatorOptions) -> Result<Self> {
         let threshold = check_threshold(&robot, &options.torque_threshold)?;
         if options.max_contacts == 0 {
-            return Err(Error::Input("max_contacts: must be at least 1".into()));
+            return Err(Error::input("max_contacts", "must be at least 1"));
         }
         if !(options.locate_within > 0.0 && options.locate_within.is_finite()) {
-            let text =
-                format!("locate_within: must be positive and finite [m], not {}", options.locate_within);
-            return Err(Error::Input(text));
+            return Err(Error::input(
+                "locate_within",
+                format!("must be positive and finite [m], not {}", options.locate_within),
+            ));
         }
         let tree = SensorTree::new(&robot, &options.sensors)?;
         let wrench_threshold = check_wrench_threshold(&tree, &options.wrench_threshold)?;
@@ -164,7 +165,7 @@ impl ContactIsolator {
     /// [`Error::Input`] names the argument.
     pub fn isolate(&mut self, q: &[f64], tau_ext: &[f64]) -> Result<&Isolation> {
         if !self.active.is_empty() {
-            return Err(Error::Input("wrenches: missing; there are sensors".into()));
+            return Err(Error::input("wrenches", "missing; there are sensors"));
         }
         self.isolate_sensed(q, tau_ext, &[])
     }
@@ -373,17 +374,17 @@ impl ContactIsolator {
 
 fn check_wrenches(tree: &SensorTree, wrenches: &[Vector6<f64>]) -> Result<()> {
     if wrenches.len() != tree.len() {
-        return Err(Error::Input(format!(
-            "wrenches: expected one for each of the {} sensors, got {}",
-            tree.len(),
-            wrenches.len()
-        )));
+        return Err(Error::input(
+            "wrenches",
+            format!("expected one for each of the {} sensors, got {}", tree.len(), wrenches.len()),
+        ));
     }
     for (name, wrench) in tree.names().iter().zip(wrenches) {
         if let Some(value) = wrench.iter().find(|x| x.is_infinite() || x.abs() > crate::robot::LARGEST) {
-            return Err(Error::Input(format!(
-                "wrenches: that of '{name}' has {value}; give finite numbers [N, Nm], or NaN to leave it out"
-            )));
+            return Err(Error::input(
+                "wrenches",
+                format!("that of '{name}' has {value}; give finite numbers [N, Nm], or NaN to leave it out"),
+            ));
         }
     }
     Ok(())

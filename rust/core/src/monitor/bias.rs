@@ -31,9 +31,10 @@ impl BiasTracker {
     /// [`Error::Input`] where the time constant is not positive and finite.
     pub fn new(time_constant: f64, limit: Vec<f64>) -> Result<Self> {
         if !(time_constant.is_finite() && time_constant > 0.0) {
-            return Err(Error::Input(format!(
-                "bias_time_constant: must be positive and finite [s], not {time_constant}"
-            )));
+            return Err(Error::input(
+                "bias_time_constant",
+                format!("must be positive and finite [s], not {time_constant}"),
+            ));
         }
         let nv = limit.len();
         Ok(Self {

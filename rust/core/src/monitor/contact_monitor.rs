@@ -41,8 +41,8 @@ impl ContactMonitor {
         let observer =
             MomentumObserver::new(robot.clone(), options.dt, &options.observer_gain).map_err(|error| {
                 match error {
-                    Error::Input(text) if text.starts_with("gain") => {
-                        Error::Input(format!("observer_{text}"))
+                    Error::Input { argument, problem } if argument == "gain" => {
+                        Error::input("observer_gain", problem)
                     }
                     other => other,
                 }
@@ -173,7 +173,7 @@ impl ContactMonitor {
             (Some(sensing), Some(wrenches)) => sensing.check_readings(wrenches),
             (Some(sensing), None) => sensing.check_readings(&[]),
             (None, Some(rows)) if !rows.is_empty() => {
-                Err(Error::Input("wrenches: the monitor was made without sensors".into()))
+                Err(Error::input("wrenches", "the monitor was made without sensors"))
             }
             (None, _) => Ok(()),
         }

@@ -60,13 +60,17 @@ impl MonitorOptions {
     /// The rule for the end of a contact, with checked thresholds `(nv,)`.
     pub(super) fn release_rule(&self, robot: &Robot, threshold: &[f64]) -> Result<ReleaseRule> {
         if let Some(time) = self.bias_settle_time.filter(|time| !(time.is_finite() && *time > 0.0)) {
-            return Err(Error::Input(format!(
-                "bias_settle_time: must be positive and finite [s], or none, not {time}"
-            )));
+            return Err(Error::input(
+                "bias_settle_time",
+                format!("must be positive and finite [s], or none, not {time}"),
+            ));
         }
         let hysteresis = robot.per_velocity("hysteresis", &self.hysteresis)?;
         if let Some(share) = hysteresis.iter().find(|share| !(0.0..1.0).contains(*share)) {
-            return Err(Error::Input(format!("hysteresis: must be a share from 0 to below 1, not {share}")));
+            return Err(Error::input(
+                "hysteresis",
+                format!("must be a share from 0 to below 1, not {share}"),
+            ));
         }
         Ok(ReleaseRule {
             settle_time: self.bias_settle_time,
@@ -79,10 +83,10 @@ impl MonitorOptions {
     /// Greatest bias of each joint [Nm, N], with checked thresholds `(nv,)`.
     pub(super) fn greatest_bias(&self, threshold: &[f64]) -> Result<Vec<f64>> {
         if self.bias_limit.is_nan() || self.bias_limit <= 0.0 {
-            return Err(Error::Input(format!(
-                "bias_limit: must be positive, in thresholds, not {}",
-                self.bias_limit
-            )));
+            return Err(Error::input(
+                "bias_limit",
+                format!("must be positive, in thresholds, not {}", self.bias_limit),
+            ));
         }
         Ok(threshold.iter().map(|threshold| self.bias_limit * threshold).collect())
     }

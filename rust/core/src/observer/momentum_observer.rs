@@ -46,7 +46,7 @@ impl MomentumObserver {
         let nv = robot.nv();
         let gain = robot.per_velocity("gain", gain)?;
         if gain.iter().any(|gain| *gain <= 0.0) {
-            return Err(Error::Input("gain: must be positive [1/s]".into()));
+            return Err(Error::input("gain", "must be positive [1/s]"));
         }
         let zeros = vec![0.0; nv];
         Ok(Self {

@@ -37,6 +37,6 @@ pub(crate) fn check_time_step(dt: f64) -> Result<()> {
         Ok(())
     } else {
         let (from, to) = (TIME_STEPS.start(), TIME_STEPS.end());
-        Err(Error::Input(format!("dt: must lie between {from:e} and {to:e} s, not {dt}")))
+        Err(Error::input("dt", format!("must lie between {from:e} and {to:e} s, not {dt}")))
     }
 }

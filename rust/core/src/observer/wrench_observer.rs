@@ -76,7 +76,7 @@ impl WrenchObserver {
         let default = if slowest * dt < FAST { slowest } else { f64::INFINITY };
         let wrench_gain = wrench_gain.unwrap_or(default);
         if wrench_gain.is_nan() || wrench_gain <= 0.0 {
-            return Err(Error::Input(format!("wrench_gain: must be positive [1/s], not {wrench_gain}")));
+            return Err(Error::input("wrench_gain", format!("must be positive [1/s], not {wrench_gain}")));
         }
         let zeros = vec![Spatial::zeros(); tree.len()];
         Ok(Self {

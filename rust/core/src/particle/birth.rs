@@ -123,8 +123,7 @@ impl Births {
 fn hidden(robot: &Robot, wanted: &[usize], options: &FilterOptions) -> Error {
     let names: Vec<&str> = wanted.iter().map(|&index| robot.links()[index].name.as_str()).collect();
     let argument = if options.links.is_some() { "links" } else { "robot" };
-    Error::Input(format!(
-        "{argument}: all of the surface of {} lies inside other parts of the same link; a particle filter needs a part \
+    Error::input(argument, format!("all of the surface of {} lies inside other parts of the same link; a particle filter needs a part \
          of it exposed",
         names.join(", ")
     ))

@@ -25,7 +25,7 @@ impl Measurement {
     pub fn check(&self) -> Result<()> {
         match self {
             Measurement::FrictionCone(friction) if !(friction.is_finite() && *friction >= 0.0) => {
-                Err(Error::Input(format!("friction: must be zero or a positive number, got {friction}")))
+                Err(Error::input("friction", format!("must be zero or a positive number, got {friction}")))
             }
             _ => Ok(()),
         }

@@ -98,33 +98,37 @@ impl FilterOptions {
         range("stiffness_range", self.stiffness_range)?;
         range("radius_range", self.radius_range)?;
         if !(self.relative_noise.is_finite() && self.relative_noise >= 0.0) {
-            return Err(Error::Input(format!(
-                "relative_noise: must be zero or a positive number, got {}",
-                self.relative_noise
-            )));
+            return Err(Error::input(
+                "relative_noise",
+                format!("must be zero or a positive number, got {}", self.relative_noise),
+            ));
         }
         self.measurement.check()?;
         self.schedule.check()?;
         let moving = |&index: &usize| robot.links()[index].body != WORLD;
         let all: Vec<usize> = robot.touchable_links().iter().copied().filter(moving).collect();
         if all.is_empty() {
-            return Err(Error::Input(
-                "robot: no link that moves has a surface; a particle filter needs one to look on".into(),
+            return Err(Error::input(
+                "robot",
+                "no link that moves has a surface; a particle filter needs one to look on",
             ));
         }
         let Some(names) = &self.links else { return Ok(all) };
         if names.is_empty() {
-            return Err(Error::Input("links: must name at least one link".into()));
+            return Err(Error::input("links", "must name at least one link"));
         }
         let mut wanted = Vec::with_capacity(names.len());
         for name in names {
             let found = all.iter().copied().find(|&index| &robot.links()[index].name == name);
             let Some(index) = found else {
                 let links: Vec<&str> = all.iter().map(|&index| robot.links()[index].name.as_str()).collect();
-                return Err(Error::Input(format!(
-                    "links: there is no link '{name}' that moves and has a surface; there are {}",
-                    links.join(", ")
-                )));
+                return Err(Error::input(
+                    "links",
+                    format!(
+                        "there is no link '{name}' that moves and has a surface; there are {}",
+                        links.join(", ")
+                    ),
+                ));
             };
             if !wanted.contains(&index) {
                 wanted.push(index);
@@ -138,9 +142,7 @@ impl FilterOptions {
     pub(super) fn per_joint(robot: &Robot, name: &str, values: &[f64]) -> Result<Vec<f64>> {
         let all = robot.per_velocity(name, values)?;
         match all.iter().find(|x| !(LEAST_TORQUE..LARGEST).contains(*x)) {
-            Some(value) => {
-                Err(Error::Input(format!("{name}: must be at least {LEAST_TORQUE:e}, got {value}")))
-            }
+            Some(value) => Err(Error::input(name, format!("must be at least {LEAST_TORQUE:e}, got {value}"))),
             None => Ok(all),
         }
     }
@@ -151,12 +153,12 @@ fn whole(name: &str, value: usize, range: RangeInclusive<usize>) -> Result<()> {
         return Ok(());
     }
     let (low, high) = range.into_inner();
-    Err(Error::Input(format!("{name}: must be a whole number from {low} to {high}, got {value}")))
+    Err(Error::input(name, format!("must be a whole number from {low} to {high}, got {value}")))
 }
 
 fn range(name: &str, [low, high]: [f64; 2]) -> Result<()> {
     if low > 0.0 && low <= high && high < 1e12 {
         return Ok(());
     }
-    Err(Error::Input(format!("{name}: must be two positive numbers, the lesser first, got {low} and {high}")))
+    Err(Error::input(name, format!("must be two positive numbers, the lesser first, got {low} and {high}")))
 }

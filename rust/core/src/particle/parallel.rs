@@ -46,7 +46,7 @@ impl Crew {
             .num_threads(threads)
             .thread_name(|index| format!("contactsense-{index}"))
             .build()
-            .map_err(|error| Error::Input(format!("threads: {threads} cannot be started ({error})")))?;
+            .map_err(|error| Error::input("threads", format!("{threads} cannot be started ({error})")))?;
         let (to, steps) = sync_channel::<Box<Swarm>>(1);
         let (done, from) = sync_channel(1);
         pool.spawn(move || {

@@ -49,10 +49,10 @@ impl Schedule {
             ("stiffness_noise", stiffness_noise),
         ] {
             if !pair.iter().all(|x| *x > 0.0 && *x < 1e9) {
-                return Err(Error::Input(format!(
-                    "schedule: {name} must be two positive numbers, got {} and {}",
-                    pair[0], pair[1]
-                )));
+                return Err(Error::input(
+                    "schedule",
+                    format!("{name} must be two positive numbers, got {} and {}", pair[0], pair[1]),
+                ));
             }
         }
         Ok(())

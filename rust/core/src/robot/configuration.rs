@@ -25,14 +25,14 @@ pub(crate) fn check_vector(argument: &str, values: &[f64], length: usize) -> Res
 
 #[cold]
 fn wrong_length(argument: &str, found: usize, wanted: usize) -> Error {
-    Error::Input(format!("{argument}: expected {wanted} numbers, got {found}"))
+    Error::input(argument, format!("expected {wanted} numbers, got {found}"))
 }
 
 #[cold]
 fn not_finite(argument: &str, values: &[f64]) -> Error {
     let index = values.iter().position(|x| x.is_nan() || x.abs() >= LARGEST).unwrap_or(0);
     let value = values[index];
-    Error::Input(format!("{argument}: entry {index} is {value}; all must be finite and below {LARGEST:e}"))
+    Error::input(argument, format!("entry {index} is {value}; all must be finite and below {LARGEST:e}"))
 }
 
 impl Robot {
@@ -86,10 +86,10 @@ impl Robot {
             _ if values.len() == self.nv() => values.to_vec(),
             _ => {
                 let wanted = self.nv();
-                return Err(Error::Input(format!(
-                    "{argument}: expected one number or {wanted}, got {}",
-                    values.len()
-                )));
+                return Err(Error::input(
+                    argument,
+                    format!("expected one number or {wanted}, got {}", values.len()),
+                ));
             }
         };
         check_vector(argument, &all, self.nv())?;
@@ -116,7 +116,7 @@ fn not_unit(kind: JointKind, index: usize, norm: f64) -> Error {
         JointKind::FreeFlyer => format!("entries {}..{} are a quaternion (x, y, z, w)", index + 3, index + 7),
         _ => format!("entries {index}..{} are (cos, sin) of a continuous joint", index + 2),
     };
-    Error::Input(format!("q: {text} and must have norm 1, not {norm:.6}"))
+    Error::input("q", format!("{text} and must have norm 1, not {norm:.6}"))
 }
 
 /// Writes `tau` as `nv` numbers, with zeros for an unactuated base.

@@ -49,7 +49,7 @@ impl Robot {
         let (kinematics, pose) = self.placed(q, link)?;
         let point = match point {
             Some(point) if point.iter().all(|x| x.is_finite()) => Vector3::from(point),
-            Some(_) => return Err(Error::Input("point: all entries must be finite".into())),
+            Some(_) => return Err(Error::input("point", "all entries must be finite")),
             None => pose.translation,
         };
         let from_origin = point - kinematics.origin;
@@ -71,7 +71,7 @@ impl Robot {
     fn placed(&self, q: &[f64], link: usize) -> Result<(Kinematics, Pose)> {
         self.check_configuration(q)?;
         if link >= self.links.len() {
-            return Err(Error::Input(format!("link: index {link} of {}", self.links.len())));
+            return Err(Error::input("link", format!("index {link} of {}", self.links.len())));
         }
         let mut kinematics = Kinematics::new(self);
         kinematics.set_configuration(self, q);

@@ -291,7 +291,7 @@ impl Robot {
     pub fn link(&self, name: &str) -> Result<usize> {
         self.link_index.get(name).copied().ok_or_else(|| {
             let names: Vec<&str> = self.links.iter().map(|link| link.name.as_str()).collect();
-            Error::Input(format!("link: there is no '{name}'; the links are {}", names.join(", ")))
+            Error::input("link", format!("there is no '{name}'; the links are {}", names.join(", ")))
         })
     }
 }

@@ -226,16 +226,19 @@ pub(crate) fn check_readings(tree: &SensorTree, wrenches: &[[f64; 6]]) -> Result
 #[cold]
 fn wrong_count(tree: &SensorTree, found: usize) -> Error {
     let names = tree.names().join(", ");
-    Error::Input(format!(
-        "wrenches: expected shape ({}, 6), one row a sensor ({names}), got {found} rows",
-        tree.len()
-    ))
+    Error::input(
+        "wrenches",
+        format!("expected shape ({}, 6), one row a sensor ({names}), got {found} rows", tree.len()),
+    )
 }
 
 #[cold]
 fn too_large(tree: &SensorTree, row: usize) -> Error {
-    Error::Input(format!(
-        "wrenches: row {row} ('{}') must be below {LARGEST:e}; NaN where a sensor gives no reading",
-        tree.names()[row]
-    ))
+    Error::input(
+        "wrenches",
+        format!(
+            "row {row} ('{}') must be below {LARGEST:e}; NaN where a sensor gives no reading",
+            tree.names()[row]
+        ),
+    )
 }

@@ -47,17 +47,20 @@ impl SensorTree {
         for (index, sensor) in sensors.iter().enumerate() {
             let mount = mount(robot, sensor)?;
             if sensor.name == JOINT_TORQUES {
-                return Err(Error::Input(format!("sensors: '{JOINT_TORQUES}' is no name for a sensor")));
+                return Err(Error::input("sensors", format!("'{JOINT_TORQUES}' is no name for a sensor")));
             }
             if sensors[..index].iter().any(|other| other.name == sensor.name) {
-                return Err(Error::Input(format!("sensors: two are named '{}'", sensor.name)));
+                return Err(Error::input("sensors", format!("two are named '{}'", sensor.name)));
             }
             if let Some(other) = at_link[mount.link].replace(index) {
                 let other: &ForceTorqueSensor = &sensors[other];
-                return Err(Error::Input(format!(
-                    "sensors: '{}' and '{}' both sit at link '{}'; a link has one joint to its parent",
-                    other.name, sensor.name, sensor.link
-                )));
+                return Err(Error::input(
+                    "sensors",
+                    format!(
+                        "'{}' and '{}' both sit at link '{}'; a link has one joint to its parent",
+                        other.name, sensor.name, sensor.link
+                    ),
+                ));
             }
             mounts.push(mount);
         }
@@ -162,10 +165,10 @@ impl SensorTree {
         let mut named = vec![false; self.len()];
         for name in names {
             let Some(sensor) = self.find(name) else {
-                return Err(Error::Input(format!(
-                    "wanted_contacts: there is no sensor '{name}'; the sensors are {}",
-                    self.names.join(", ")
-                )));
+                return Err(Error::input(
+                    "wanted_contacts",
+                    format!("there is no sensor '{name}'; the sensors are {}", self.names.join(", ")),
+                ));
             };
             named[sensor] = true;
         }
@@ -221,25 +224,32 @@ fn mount(robot: &Robot, sensor: &ForceTorqueSensor) -> Result<Mount> {
     let name = &sensor.name;
     let Some(index) = robot.links().iter().position(|link| link.name == sensor.link) else {
         let names: Vec<&str> = robot.links().iter().map(|link| link.name.as_str()).collect();
-        return Err(Error::Input(format!(
-            "sensors: '{name}' sits at the link '{}', which the robot does not have; its links are {}",
-            sensor.link,
-            names.join(", ")
-        )));
+        return Err(Error::input(
+            "sensors",
+            format!(
+                "'{name}' sits at the link '{}', which the robot does not have; its links are {}",
+                sensor.link,
+                names.join(", ")
+            ),
+        ));
     };
     let link = &robot.links()[index];
     if link.parent.is_none() || link.body == WORLD {
         let reason = if link.body == WORLD { "is fixed to the world" } else { "is the root" };
-        return Err(Error::Input(format!(
-            "sensors: '{name}' sits at the link '{}', which {reason}; a sensor joins a link that can move to its \
+        return Err(Error::input(
+            "sensors",
+            format!(
+                "'{name}' sits at the link '{}', which {reason}; a sensor joins a link that can move to its \
              parent",
-            sensor.link
-        )));
+                sensor.link
+            ),
+        ));
     }
     if !sensor.has_rigid_pose() {
-        return Err(Error::Input(format!(
-            "sensors: the pose of '{name}' must be rigid: a rotation matrix and a finite translation [m]"
-        )));
+        return Err(Error::input(
+            "sensors",
+            format!("the pose of '{name}' must be rigid: a rotation matrix and a finite translation [m]"),
+        ));
     }
     Ok(Mount { link: index, body: link.body, placement: link.placement.compose(&sensor.pose), parent: None })
 }

@@ -12,16 +12,17 @@ pub(super) fn positions(tree: &Tree, locked: &[(String, Option<f64>)]) -> Result
     for (name, position) in locked {
         if !tree.moving().any(|joint| joint.name == *name) {
             let valid: Vec<String> = tree.moving().map(|joint| format!("'{}'", joint.name)).collect();
-            return Err(Error::Input(format!(
-                "locked_joints: '{name}' is no joint that moves; valid names: {}",
-                valid.join(", ")
-            )));
+            return Err(Error::input(
+                "locked_joints",
+                format!("'{name}' is no joint that moves; valid names: {}", valid.join(", ")),
+            ));
         }
         let position = position.unwrap_or(0.0);
         if !position.is_finite() {
-            return Err(Error::Input(format!(
-                "locked_joints: the position of '{name}' must be a finite number, not {position}"
-            )));
+            return Err(Error::input(
+                "locked_joints",
+                format!("the position of '{name}' must be a finite number, not {position}"),
+            ));
         }
         match positions.iter_mut().find(|(known, _)| known == name) {
             Some((_, known)) => *known = position,

@@ -18,10 +18,10 @@ pub(super) struct MeshFinder {
 impl MeshFinder {
     pub fn new(urdf: &Path, package_dirs: &[PathBuf]) -> Result<Self> {
         let unusable = |path: &Path, cause: IoError| {
-            Error::Input(format!(
-                "package_dirs must hold folders, which '{}' is not: {cause}",
-                path.display()
-            ))
+            Error::input(
+                "package_dirs",
+                format!("must hold folders, which '{}' is not: {cause}", path.display()),
+            )
         };
         let mut packages = vec![];
         for entry in package_dirs {
@@ -31,7 +31,7 @@ impl MeshFinder {
         }
         let folder = absolute(urdf).and_then(|full| resolve(full.parent().unwrap_or(&full)));
         let folder = folder.map_err(|cause| {
-            Error::Input(format!("path must be a path to a URDF file, not '{}': {cause}", urdf.display()))
+            Error::input("path", format!("must be a path to a URDF file, not '{}': {cause}", urdf.display()))
         })?;
         packages.push((folder.file_name().unwrap_or_default().to_owned(), folder.clone()));
         Ok(Self { folder, packages })

@@ -97,10 +97,10 @@ impl Default for UrdfOptions {
 pub fn from_urdf(path: impl AsRef<Path>, options: &UrdfOptions) -> Result<RobotDescription> {
     let path = path.as_ref();
     if !options.gravity.iter().all(|x| x.is_finite()) {
-        return Err(Error::Input(format!(
-            "gravity must be 3 finite numbers [m/s^2], not {:?}",
-            options.gravity.as_slice()
-        )));
+        return Err(Error::input(
+            "gravity",
+            format!("must be 3 finite numbers [m/s^2], not {:?}", options.gravity.as_slice()),
+        ));
     }
     let meshes = meshes::MeshFinder::new(path, &options.package_dirs)?;
     let mut checked = guard::read(path, options.geometry)?;

@@ -142,7 +142,10 @@ fn locked_joints_merge() {
     {
         let options = UrdfOptions { locked_joints: vec![(name.into(), position)], ..UrdfOptions::default() };
         let refused = read(&arm(), &options);
-        assert!(matches!(&refused, Err(Error::Input(text)) if text.contains(message)), "{refused:?}");
+        assert!(
+            matches!(&refused, Err(error @ Error::Input { .. }) if error.to_string().contains(message)),
+            "{refused:?}"
+        );
     }
 }
 

@@ -93,7 +93,7 @@ fn bad_sensors_are_named() {
     ];
     for (sensors, part) in cases {
         match SensorTree::new(&robot(), &sensors) {
-            Err(Error::Input(text)) => assert!(text.contains(part), "{text}"),
+            Err(error @ Error::Input { .. }) => assert!(error.to_string().contains(part), "{error}"),
             other => panic!("{other:?}"),
         }
     }
