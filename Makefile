@@ -17,6 +17,7 @@ lint: install
 	$(BIN)/ruff format --check .
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --release -- -D warnings
+	cargo clippy -p contactsense --no-default-features --all-targets --release -- -D warnings
 
 types: install
 	$(BIN)/mypy

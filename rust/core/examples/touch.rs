@@ -1,4 +1,4 @@
-//! A robot from a URDF, and where a push on it is found from the joint torques alone.
+//! A robot, from a URDF file or made up, and where a push on it is found from the joint torques alone.
 //!
 //! `cargo run --release --example touch -- [URDF [PACKAGE_DIR ...]]`
 
@@ -9,15 +9,15 @@ use contactsense::robot::{Robot, UrdfOptions};
 use contactsense::{Error, Result};
 use nalgebra::DVector;
 
-const PACKAGED: &str =
-    concat!(env!("CARGO_MANIFEST_DIR"), "/../../python/contactsense/descriptions/iiwa14.urdf");
 const FORCE: f64 = 20.0; // [N]
 
 fn main() -> Result<()> {
     let mut arguments = std::env::args().skip(1);
-    let path = arguments.next().unwrap_or_else(|| PACKAGED.to_owned());
+    let path = arguments.next();
     let package_dirs = arguments.map(Into::into).collect();
-    let robot = Arc::new(Robot::from_urdf(&path, &UrdfOptions { package_dirs, ..UrdfOptions::default() })?);
+    let options = UrdfOptions { package_dirs, ..UrdfOptions::default() };
+    let robot =
+        Arc::new(path.map_or_else(|| Ok(Robot::example_arm()), |path| Robot::from_urdf(path, &options))?);
     println!("{}: {} joints", robot.name(), robot.joint_names().len());
     for warning in robot.warnings() {
         println!("  {warning}");

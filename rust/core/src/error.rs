@@ -1,6 +1,17 @@
 //! The one error type; each kind has its exception in Python.
 
 /// What went wrong. The message names the thing and says what would be right.
+///
+/// ```
+/// use contactsense::{robot::Robot, Error};
+///
+/// match Robot::example_arm().check_configuration(&[0.0; 6]) {
+///     Err(Error::Input { argument, problem, .. }) => {
+///         assert_eq!((argument.as_str(), problem.as_str()), ("q", "expected 7 numbers, got 6"));
+///     }
+///     other => panic!("{other:?}"),
+/// }
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {

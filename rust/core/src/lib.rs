@@ -1,4 +1,7 @@
 //! contactsense: a robot's sense of touch over its whole body, from joint positions, velocities and torques.
+//!
+//! [`monitor::ContactMonitor`] is the place to start: one call a control tick. [`robot::Robot`] comes from a URDF file
+//! or a description; all vectors are in its joints' order, in SI units, and vectors of the world in its axes.
 #![warn(missing_docs)]
 #![allow(rustdoc::broken_intra_doc_links)] // units such as [m] look like links
 
@@ -16,3 +19,4 @@ pub mod spatial;
 pub mod surface;
 
 pub use error::{Error, Result};
+pub use nalgebra;

@@ -70,6 +70,30 @@ impl Default for IsolatorOptions {
 }
 
 /// Finds the contact that explains an external torque.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::isolation::{ContactIsolator, IsolatorOptions};
+/// use contactsense::robot::Robot;
+///
+/// let robot = Arc::new(Robot::example_arm());
+/// let q = [0.3, 0.8, -0.4, 0.9, 0.5, 0.7, 0.0];
+/// // The torque of a push of 20 N on the side of the last link.
+/// let link = robot.link("link_7")?;
+/// let pose = robot.link_pose(&q, link)?;
+/// let point = pose.transform_point(&[0.05, 0.0, 0.1].into());
+/// let force = pose.rotation * nalgebra::Vector3::new(-20.0, 0.0, 0.0);
+/// let jacobian = robot.jacobian(&q, link, Some(point.into()))?;
+/// let tau_ext = jacobian.rows(0, 3).transpose() * force;
+///
+/// let mut isolator = ContactIsolator::new(robot, &IsolatorOptions::default())?;
+/// let isolation = isolator.isolate(&q, tau_ext.as_slice())?;
+/// assert_eq!(isolation.contacts.len(), 1);
+/// assert_eq!(isolation.contacts[0].link, link);
+/// assert!((isolation.contacts[0].force - force).norm() < 1e-6);
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct ContactIsolator {
     pub(super) robot: Arc<Robot>,

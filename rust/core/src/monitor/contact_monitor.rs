@@ -16,6 +16,29 @@ use crate::robot::Robot;
 use crate::sensor::{is_known, SensorTree};
 
 /// The sense of touch of one robot, called once a control tick.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::monitor::{ContactMonitor, MonitorOptions};
+/// use contactsense::robot::Robot;
+///
+/// let robot = Arc::new(Robot::example_arm());
+/// let (q, v) = (vec![0.4; 7], vec![0.0; 7]);
+/// let weight = robot.inverse_dynamics(&q, &v, &v)?;
+/// let mut monitor = ContactMonitor::new(robot, &MonitorOptions::new(1e-3))?;
+/// for _ in 0..100 {
+///     monitor.update(&q, &v, &weight, None, None, None)?;
+/// }
+/// assert!(!monitor.report().collision);
+///
+/// let pushed: Vec<f64> = weight.iter().map(|tau| tau - 3.0).collect();
+/// for _ in 0..100 {
+///     monitor.update(&q, &v, &pushed, None, None, None)?;
+/// }
+/// assert!(monitor.report().collision);
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct ContactMonitor {
     robot: Arc<Robot>,

@@ -11,6 +11,25 @@ use crate::robot::{ForwardDynamics, Kinematics, MomentumPass, Robot};
 ///
 /// Each component is the true external torque behind a first-order low-pass with time constant `1 / gain`. The step
 /// is exact for a constant external torque, second-order in `dt` and stable for any `gain * dt`.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::observer::MomentumObserver;
+/// use contactsense::robot::Robot;
+///
+/// let robot = Arc::new(Robot::example_arm());
+/// let (q, v) = (vec![0.4; 7], vec![0.0; 7]);
+/// // At rest the motors hold the weight, and 2 Nm from outside on the second joint.
+/// let mut tau = robot.inverse_dynamics(&q, &v, &v)?;
+/// tau[1] -= 2.0;
+/// let mut observer = MomentumObserver::new(robot, 1e-3, &[50.0])?;
+/// for _ in 0..500 {
+///     observer.update(&q, &v, &tau, None, None)?;
+/// }
+/// assert!((observer.external_torque()[1] - 2.0).abs() < 1e-6);
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct MomentumObserver {
     robot: Arc<Robot>,

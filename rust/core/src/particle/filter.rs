@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use super::columns::Columns;
 use super::estimate::ContactEstimate;
 use super::options::FilterOptions;
-use super::parallel::Crew;
+use super::parallel::Pool;
 use super::swarm::Swarm;
 use crate::error::Result;
 use crate::robot::Robot;
@@ -19,12 +19,29 @@ use crate::robot::Robot;
 /// filter updates (Rao-Blackwell), so that only link, point and obstacle are sampled, and an obstacle's centre is kept
 /// from step to step but for a share that is drawn anew.
 ///
-/// After the first one an update allocates nothing, and takes a time in proportion to the particles.
+/// After the first one an update on one thread allocates nothing; its time is in proportion to the particles.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::particle::{ContactParticleFilter, FilterOptions};
+/// use contactsense::robot::Robot;
+///
+/// let robot = Arc::new(Robot::example_arm());
+/// let options = FilterOptions { particles: 1000, ..FilterOptions::default() };
+/// let mut filter = ContactParticleFilter::new(robot, options)?;
+/// let estimate = filter.update(&[0.4; 7], &[0.0; 7])?;
+/// assert!(!estimate.contact);
+///
+/// let estimate = filter.update(&[0.4; 7], &[1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])?;
+/// assert!(estimate.contact && estimate.ambiguous);
+/// assert_eq!(filter.particles().len(), 1000);
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct ContactParticleFilter {
-    // Away only while the crew has it, within `update`.
-    swarm: Option<Box<Swarm>>,
-    crew: Option<Crew>,
+    swarm: Swarm,
+    pool: Pool,
 }
 
 impl ContactParticleFilter {
@@ -34,9 +51,8 @@ impl ContactParticleFilter {
     /// [`Error::Input`](crate::Error::Input) names the option.
     pub fn new(robot: Arc<Robot>, options: FilterOptions) -> Result<Self> {
         let threads = options.threads;
-        let swarm = Box::new(Swarm::new(robot, options)?);
-        let crew = if threads > 1 { Some(Crew::new(threads)?) } else { None };
-        Ok(Self { swarm: Some(swarm), crew })
+        let swarm = Swarm::new(robot, options)?;
+        Ok(Self { swarm, pool: Pool::new(threads)? })
     }
 
     /// Takes in a configuration `q` `(nq,)` and the external torque `tau_ext` `(nv,)` measured there [Nm; N for sliding
@@ -48,62 +64,46 @@ impl ContactParticleFilter {
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) names the argument; the filter is unchanged.
     pub fn update(&mut self, q: &[f64], tau_ext: &[f64]) -> Result<&ContactEstimate> {
-        let swarm = self.swarm();
+        let Self { swarm, pool } = self;
         swarm.read(q, tau_ext)?;
-        match (&self.crew, self.swarm.take()) {
-            (Some(crew), Some(swarm)) => self.swarm = Some(crew.step(swarm)),
-            (_, swarm) => {
-                self.swarm = swarm;
-                self.swarm().step();
-            }
-        }
-        Ok(self.estimate())
+        pool.install(|| swarm.step());
+        Ok(&swarm.estimate)
     }
 
     /// Forgets all updates.
     pub fn reset(&mut self) {
-        self.swarm().reset();
+        self.swarm.reset();
     }
 
     /// The last estimate.
     pub fn estimate(&self) -> &ContactEstimate {
-        &self.present().estimate
+        &self.swarm.estimate
     }
 
     /// The particles after the last update.
     pub fn particles(&self) -> &Columns {
-        &self.present().particles
+        &self.swarm.particles
     }
 
     /// Their weights, which sum to one.
     pub fn weights(&self) -> &[f64] {
-        &self.present().weights
+        &self.swarm.weights
     }
 
     /// Indices of the links that are looked on.
     pub fn links(&self) -> &[usize] {
-        &self.present().frames.wanted
+        &self.swarm.frames.wanted
     }
 
     /// Contact point of particle k, world frame [m].
     pub fn point(&self, k: usize) -> Vector3<f64> {
-        let Swarm { frames, particles, .. } = self.present();
+        let Swarm { frames, particles, .. } = &self.swarm;
         frames.links[particles.link[k] as usize].pose.transform_point(&particles.point[k])
     }
 
     /// Outward normal of particle k, world frame.
     pub fn normal(&self, k: usize) -> Vector3<f64> {
-        let Swarm { frames, particles, .. } = self.present();
+        let Swarm { frames, particles, .. } = &self.swarm;
         frames.links[particles.link[k] as usize].pose.rotation * particles.normal[k]
     }
-
-    fn swarm(&mut self) -> &mut Swarm {
-        self.swarm.as_mut().expect(PRESENT)
-    }
-
-    fn present(&self) -> &Swarm {
-        self.swarm.as_ref().expect(PRESENT)
-    }
 }
-
-const PRESENT: &str = "the particles are away only within an update";

@@ -1,11 +1,9 @@
 //! A step on several threads.
 
-use std::sync::mpsc::{sync_channel, Receiver, SyncSender};
-use std::sync::Mutex;
-
 use super::columns::Slice;
-use super::swarm::Swarm;
-use crate::error::{Error, Result};
+#[cfg(feature = "parallel")]
+use crate::error::Error;
+use crate::error::Result;
 
 /// Fewer particles are not worth sharing.
 const GRAIN: usize = 512;
@@ -24,49 +22,57 @@ pub(super) fn for_each(
     }
     let middle = count / 2;
     let (left, right) = particles.split_at(middle);
-    rayon::join(|| for_each(left, start, threads, work), || for_each(right, start + middle, threads, work));
+    join(|| for_each(left, start, threads, work), || for_each(right, start + middle, threads, work));
 }
 
-/// A pool of threads of which one waits for steps to do.
-///
-/// Handing a step to a pool from outside allocates now and then. So one of its threads takes steps from a channel, and
-/// shares them with the others from within.
+#[cfg(feature = "parallel")]
+fn join(left: impl FnOnce() + Send, right: impl FnOnce() + Send) {
+    rayon::join(left, right);
+}
+
+#[cfg(not(feature = "parallel"))]
+fn join(left: impl FnOnce(), right: impl FnOnce()) {
+    left();
+    right();
+}
+
+/// The threads of a filter; none where it has one, or without the feature `parallel`: the answers are the same.
 #[derive(Debug)]
-pub(super) struct Crew {
-    to: SyncSender<Box<Swarm>>,
-    // For `Sync` only: never contended.
-    from: Mutex<Receiver<Box<Swarm>>>,
-    /// Ends the threads when it is dropped, after `to`.
-    _pool: rayon::ThreadPool,
+pub(super) struct Pool {
+    #[cfg(feature = "parallel")]
+    pool: Option<rayon::ThreadPool>,
 }
 
-impl Crew {
+#[cfg(feature = "parallel")]
+impl Pool {
     pub fn new(threads: usize) -> Result<Self> {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .thread_name(|index| format!("contactsense-{index}"))
-            .build()
-            .map_err(|error| Error::input("threads", format!("{threads} cannot be started ({error})")))?;
-        let (to, steps) = sync_channel::<Box<Swarm>>(1);
-        let (done, from) = sync_channel(1);
-        pool.spawn(move || {
-            while let Ok(mut swarm) = steps.recv() {
-                swarm.step();
-                if done.send(swarm).is_err() {
-                    break;
-                }
-            }
-        });
-        Ok(Crew { to, from: Mutex::new(from), _pool: pool })
+        let start = || {
+            rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .thread_name(|index| format!("contactsense-{index}"))
+                .build()
+                .map_err(|error| Error::input("threads", format!("{threads} cannot be started ({error})")))
+        };
+        Ok(Pool { pool: (threads > 1).then(start).transpose()? })
     }
 
-    /// Does one step.
-    pub fn step(&self, swarm: Box<Swarm>) -> Box<Swarm> {
-        let from = self.from.lock().expect(ALIVE);
-        self.to.send(swarm).expect(ALIVE);
-        from.recv().expect(ALIVE)
+    /// Does the work on one of the threads, so that it may share parts of it with the others. Now and then rayon takes
+    /// memory for its queue.
+    pub fn install(&self, work: impl FnOnce() + Send) {
+        match &self.pool {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
     }
 }
 
-/// A step does not panic, so the thread that takes them lives as long as the crew.
-const ALIVE: &str = "the thread of the filter is alive";
+#[cfg(not(feature = "parallel"))]
+impl Pool {
+    pub fn new(_threads: usize) -> Result<Self> {
+        Ok(Pool {})
+    }
+
+    pub fn install(&self, work: impl FnOnce()) {
+        work();
+    }
+}

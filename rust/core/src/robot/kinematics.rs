@@ -37,6 +37,18 @@ impl BodyState {
 }
 
 /// Poses and velocities of all bodies; entry 0 is the world.
+///
+/// ```
+/// use contactsense::robot::{Kinematics, Robot};
+///
+/// let robot = Robot::example_arm();
+/// let mut kinematics = Kinematics::new(&robot);
+/// kinematics.set_configuration(&robot, &[0.0; 7]);
+/// let link = robot.link("link_7")?;
+/// // Upright, seven joints 0.3 m apart.
+/// assert!((kinematics.link_pose(&robot, link).translation.z - 2.1).abs() < 1e-12);
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Kinematics {
     /// The reference origin in the world frame [m].

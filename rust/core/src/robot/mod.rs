@@ -4,6 +4,7 @@ mod ancestry;
 pub(crate) mod configuration;
 pub(crate) mod description;
 mod dynamics;
+mod example;
 pub(crate) mod jacobian;
 pub(crate) mod joint_axis;
 mod kinematics;
@@ -11,6 +12,7 @@ mod link;
 #[allow(clippy::module_inception)] // the room is called after what is in it
 mod robot;
 
+#[cfg(feature = "urdf")]
 pub use crate::load::urdf::{from_urdf, UrdfGeometry, UrdfOptions};
 pub use configuration::LARGEST;
 pub use description::{JointDescription, JointKind, LinkDescription, RobotDescription};

@@ -28,6 +28,29 @@ struct Acceleration {
 /// Finds the external wrench that each sensor sees: its reading less what the bodies behind it weigh and resist.
 ///
 /// One Newton-Euler pass for all sensors; a body counts once, and sums pass on from sensor to sensor.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::robot::Robot;
+/// use contactsense::sensor::{Convention, ForceTorqueSensor, LoadCompensator};
+/// use contactsense::spatial::Pose;
+///
+/// let robot = Arc::new(Robot::example_arm());
+/// let sensor = ForceTorqueSensor {
+///     name: "wrist".into(),
+///     link: "link_7".into(),
+///     pose: Pose::identity(),
+///     convention: Convention::Load,
+/// };
+/// let mut compensator = LoadCompensator::new(robot, &[sensor])?;
+/// let still = [0.0; 7];
+/// // The arm stands upright: the sensor carries the 2 kg behind it, and somebody pulls at it with 5 N.
+/// let reading = [0.0, 0.0, 5.0 - 2.0 * 9.81, 0.0, 0.0, 0.0];
+/// let external = compensator.update(&still, &still, &still, &[reading])?;
+/// assert!((external[0][2] - 5.0).abs() < 1e-9);
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct LoadCompensator {
     robot: Arc<Robot>,

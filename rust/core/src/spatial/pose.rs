@@ -3,6 +3,19 @@
 use nalgebra::{Matrix3, Vector3};
 
 /// A rigid transform: `world = rotation * local + translation`.
+///
+/// ```
+/// use contactsense::spatial::Pose;
+/// use nalgebra::{Rotation3, Vector3};
+///
+/// let pose = Pose {
+///     rotation: Rotation3::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2).into_inner(),
+///     translation: Vector3::new(1.0, 0.0, 0.0),
+/// };
+/// let point = pose.transform_point(&Vector3::x());
+/// assert!((point - Vector3::new(1.0, 1.0, 0.0)).norm() < 1e-12);
+/// assert!((pose.inverse_transform_point(&point) - Vector3::x()).norm() < 1e-12);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
     /// Rotation from the local to the outer frame.

@@ -13,6 +13,7 @@ mod sample;
 #[cfg(test)]
 mod tests;
 
+#[cfg(feature = "mesh-files")]
 pub use crate::load::mesh_file::{load_mesh, VerticesAndTriangles};
 pub use part::{Geometry, Part};
 
@@ -66,6 +67,26 @@ pub struct SurfacePoint {
 }
 
 /// The surface of one link.
+///
+/// ```
+/// use contactsense::spatial::Pose;
+/// use contactsense::surface::{Geometry, Part, Surface};
+/// use nalgebra::Vector3;
+///
+/// let ball = Part { geometry: Geometry::Sphere { radius: 0.5 }, pose: Pose::identity() };
+/// let (surface, remarks) = Surface::new(vec![ball])?;
+/// assert!(remarks.is_empty());
+///
+/// let near = surface.closest_point(&Vector3::new(2.0, 0.0, 0.0));
+/// assert!((near.distance - 1.5).abs() < 1e-12 && (near.normal - Vector3::x()).norm() < 1e-12);
+///
+/// let mut hits = Vec::with_capacity(8);
+/// surface.cast_line_into(&Vector3::new(0.0, 0.0, -2.0), &Vector3::z(), f64::NEG_INFINITY, &mut hits);
+/// assert!((hits[0].distance - 1.5).abs() < 1e-12 && hits.len() == 2);
+///
+/// assert_eq!(surface.sample(100, 7).len(), 100);
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Surface {
     solids: Vec<Solid>,
@@ -181,8 +202,8 @@ impl Surface {
     /// inside another closed part are left out too, so that those of closed parts come in pairs in and out.
     ///
     /// Never allocates: where the crossings of all parts, before those inside others are dropped, do not fit into the
-    /// capacity of `hits`, only the nearest ones that fit are looked at, and it returns `false`. A line that is not finite, or without direction, hits
-    /// nothing.
+    /// capacity of `hits`, only the nearest ones that fit are looked at, and it returns `false`. A line that is not finite, or
+    /// without direction, hits nothing.
     pub fn cast_line_into(
         &self,
         origin: &Vector3<f64>,

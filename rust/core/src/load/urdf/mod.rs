@@ -88,10 +88,23 @@ impl Default for UrdfOptions {
 /// ```
 /// use contactsense::robot::{from_urdf, UrdfOptions};
 ///
-/// let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../python/contactsense/descriptions/iiwa14.urdf");
-/// let arm = from_urdf(path, &UrdfOptions::default())?;
-/// assert_eq!(arm.joints.len(), 7);
-/// assert!(arm.links.iter().any(|link| !link.geometry.is_empty()));
+/// let urdf = r#"
+///     <robot name="pendulum">
+///       <link name="base"/>
+///       <link name="rod">
+///         <inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>
+///         <collision><geometry><cylinder radius="0.02" length="0.5"/></geometry></collision>
+///       </link>
+///       <joint name="hinge" type="continuous">
+///         <parent link="base"/><child link="rod"/><axis xyz="0 1 0"/>
+///       </joint>
+///     </robot>"#;
+/// let path = std::env::temp_dir().join(format!("contactsense_pendulum_{}.urdf", std::process::id()));
+/// std::fs::write(&path, urdf).expect("a folder for temporary files");
+/// let description = from_urdf(&path, &UrdfOptions::default())?;
+/// assert_eq!(description.joints[0].name, "hinge");
+/// assert_eq!(description.links[1].geometry.len(), 1);
+/// # std::fs::remove_file(&path).expect("it is there");
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 pub fn from_urdf(path: impl AsRef<Path>, options: &UrdfOptions) -> Result<RobotDescription> {

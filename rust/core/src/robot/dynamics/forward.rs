@@ -25,6 +25,22 @@ struct Articulated {
 }
 
 /// Workspace of the articulated body algorithm.
+///
+/// ```
+/// use contactsense::robot::{ForwardDynamics, Kinematics, Robot};
+///
+/// let robot = Robot::example_arm();
+/// let (q, v) = (vec![0.4; 7], vec![0.0; 7]);
+/// let mut kinematics = Kinematics::new(&robot);
+/// kinematics.set_configuration(&robot, &q);
+/// kinematics.set_velocity(&robot, &v);
+/// // The torque that holds the arm gives no acceleration.
+/// let weight = robot.inverse_dynamics(&q, &v, &v)?;
+/// let mut acceleration = vec![1.0; 7];
+/// ForwardDynamics::new(&robot).evaluate(&robot, &kinematics, &v, &weight, &mut acceleration);
+/// assert!(acceleration.iter().all(|a| a.abs() < 1e-9));
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct ForwardDynamics {
     bodies: Vec<Articulated>,

@@ -20,6 +20,21 @@ struct Composite {
 }
 
 /// Workspace of the momentum pass.
+///
+/// ```
+/// use contactsense::robot::{Kinematics, MomentumPass, Robot};
+///
+/// let robot = Robot::example_arm();
+/// let (q, v) = (vec![0.4; 7], vec![0.2; 7]);
+/// let mut kinematics = Kinematics::new(&robot);
+/// kinematics.set_configuration(&robot, &q);
+/// kinematics.set_velocity(&robot, &v);
+/// let (mut momentum, mut rate) = (vec![0.0; 7], vec![0.0; 7]);
+/// MomentumPass::new(&robot).evaluate(&robot, &kinematics, &v, &mut momentum, &mut rate);
+/// let expected = robot.mass_matrix(&q)? * nalgebra::DVector::from_vec(v);
+/// assert!((momentum[0] - expected[0]).abs() < 1e-12);
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct MomentumPass {
     composite: Vec<Composite>,

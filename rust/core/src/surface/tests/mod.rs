@@ -2,6 +2,7 @@
 
 mod brute_force;
 mod crowded;
+#[cfg(feature = "mesh-files")]
 mod files;
 mod large;
 mod meshes;
