@@ -13,7 +13,7 @@ use super::rows::{Root, TorqueRows, WrenchRows};
 use super::several::SeveralContacts;
 use super::tips::TipSearch;
 use super::wrench::WrenchEstimate;
-use crate::detection::{check_threshold, check_wrench_threshold};
+use crate::detection::{check_threshold, check_wrench_threshold, is_over};
 use crate::error::{Error, Result};
 use crate::observer::WrenchObserver;
 use crate::robot::{Kinematics, Robot};
@@ -228,7 +228,7 @@ impl ContactIsolator {
         self.divide(kinematics, tau_ext, wrenches, lagged);
         self.unexplained.copy_from_slice(&self.residual);
         // Joints that feel nothing at all do not contradict the sensors: an observer is slower than they are.
-        let felt = (0..tau_ext.len()).any(|k| tau_ext[k].abs() > self.threshold[k]);
+        let felt = (0..tau_ext.len()).any(|k| is_over(tau_ext[k], self.threshold[k]));
         if felt && !self.regions.base.unknown {
             std::mem::swap(&mut self.region, &mut self.regions.base);
             self.isolate_from_torques(kinematics);
@@ -323,7 +323,7 @@ impl ContactIsolator {
         self.several.narrow(self.rows.widest_threshold(&self.limit));
         self.report_found_alone(kinematics);
         let Self { robot, tips, region, rows, limit, .. } = self;
-        tips.find(robot, |k| region.feels[k] && rows.torque[k].abs() > limit[k]);
+        tips.find(robot, |k| region.feels[k] && is_over(rows.torque[k], limit[k]));
         self.name_links(kinematics);
         true
     }
@@ -332,7 +332,7 @@ impl ContactIsolator {
     /// already is no torque.
     pub(super) fn find_tips(&mut self, share: f64) -> usize {
         let Self { robot, tips, region, residual, limit, measured, .. } = self;
-        let over = |k: usize| residual[k].abs() > limit[k].max(share * measured[k]);
+        let over = |k: usize| is_over(residual[k], limit[k].max(share * measured[k]));
         tips.find(robot, |k| region.feels[k] && over(k)).len()
     }
 

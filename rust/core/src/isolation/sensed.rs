@@ -8,6 +8,7 @@ use super::line::best_first;
 use super::result::Contact;
 use super::rows::{Root, TORQUE_SHARE};
 use super::wrench::WrenchEstimate;
+use crate::detection::is_over;
 use crate::observer::WrenchObserver;
 use crate::robot::jacobian::jacobian_column;
 use crate::robot::Kinematics;
@@ -77,7 +78,7 @@ impl ContactIsolator {
         }
         let (root, spread) = self.left_over(kinematics, sensor, wrenches);
         let over =
-            |share: f64| (0..6).any(|i| root.value[i].abs() > root.threshold[i].max(share * spread[i]));
+            |share: f64| (0..6).any(|i| is_over(root.value[i], root.threshold[i].max(share * spread[i])));
         if !over(0.0) {
             return;
         }

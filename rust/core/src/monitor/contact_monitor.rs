@@ -5,10 +5,9 @@ use std::sync::Arc;
 use super::bias::BiasTracker;
 use super::clock::SampleClock;
 use super::options::MonitorOptions;
-use super::release::ReleaseDetector;
 use super::report::ContactReport;
 use super::sensing::Sensing;
-use crate::detection::Detector;
+use crate::detection::{Detector, ReleaseDetector};
 use crate::error::{Error, Result};
 use crate::isolation::ContactIsolator;
 use crate::observer::{check_time_step, MomentumObserver, Step};
@@ -214,16 +213,10 @@ impl ContactMonitor {
         // A joint that is left out has no torque to follow.
         leave_out(sensing, collision_torque, Some(bias.bias()));
         let ready = bias.ready();
-        let threshold = detector.threshold();
-        let over = |((torque, bias), threshold): ((&f64, &f64), &f64)| (torque - bias).abs() > *threshold;
-        let felt = sensing.as_ref().is_some_and(|sensing| {
-            let mut wrenches = sensing.unwanted().iter().enumerate();
-            wrenches.any(|(sensor, wrench)| detector.is_wrench_over(sensor, wrench))
-        });
-        let touched = ready
-            && (detector.collision()
-                || felt
-                || collision_torque.iter().zip(bias.bias()).zip(threshold).any(over));
+        let without_bias = collision_torque.iter().zip(bias.bias()).map(|(torque, bias)| torque - bias);
+        let unwanted = sensing.as_ref().map_or(&[][..], Sensing::unwanted);
+        let [on_joints, felt] = detector.any_over(without_bias, unwanted);
+        let touched = ready && (detector.collision() || felt || on_joints);
         if touched && !new {
             release.interrupt();
         } else if touched {

@@ -4,7 +4,6 @@ mod bias;
 mod clock;
 mod contact_monitor;
 mod options;
-mod release;
 mod report;
 mod sensing;
 

@@ -1,6 +1,6 @@
 //! Settings of the monitor.
 
-use super::release::ReleaseRule;
+use crate::detection::ReleaseRule;
 use crate::error::{Error, Result};
 use crate::isolation::IsolatorOptions;
 use crate::robot::{JointKind, Robot};

@@ -20,6 +20,7 @@ use super::options::{FilterOptions, Likelihood, Motion};
 use super::parallel;
 use super::resampling::{effective_share, normalise};
 use super::schedule::Noise;
+use crate::detection::Gate;
 use crate::error::Result;
 use crate::math::random::Stream;
 use crate::robot::Robot;
@@ -45,7 +46,7 @@ pub(super) struct Swarm {
     robot: Arc<Robot>,
     pub options: FilterOptions,
     torque_noise: Vec<f64>,
-    threshold: Vec<f64>,
+    gate: Gate,
     /// The measurement: torques, and their noise.
     torque: Vec<f64>,
     noise: Vec<f64>,
@@ -84,7 +85,10 @@ impl Swarm {
         Ok(Self {
             check: Check::new(&options, torque_noise.clone()),
             torque_noise,
-            threshold: FilterOptions::per_joint(&robot, "torque_threshold", &options.torque_threshold)?,
+            gate: Gate::with_hysteresis(
+                FilterOptions::per_joint(&robot, "torque_threshold", &options.torque_threshold)?,
+                RELEASE,
+            ),
             torque: vec![0.0; nv],
             noise: vec![1.0; nv],
             turning: turning(&robot),
@@ -112,6 +116,7 @@ impl Swarm {
         self.step = 0;
         self.streams = 0;
         self.felt = false;
+        self.gate.reset();
         self.estimate.clear();
         self.estimate.event = Event::None;
         self.estimate.updates = 0;
@@ -195,10 +200,7 @@ impl Swarm {
 
     /// Whether a contact begins, goes on or ends.
     fn notice(&mut self, moved: f64) -> Event {
-        // What was felt once is felt until it is all but gone.
-        let share = if self.felt { RELEASE } else { 1.0 };
-        let mut over = self.torque.iter().zip(&self.threshold);
-        let felt = over.any(|(torque, threshold)| torque.abs() > share * threshold);
+        let felt = self.gate.update(&self.torque, 1.0);
         let before = std::mem::replace(&mut self.felt, felt);
         match (before, felt) {
             (false, false) => Event::None,

@@ -22,7 +22,7 @@ const LARGEST_REMAINDER: f64 = 1.0;
 
 /// What the release rule needs to know of a robot, one number a joint.
 #[derive(Debug, Clone)]
-pub(super) struct ReleaseRule {
+pub(crate) struct ReleaseRule {
     /// A torque that stands still for this long becomes the bias at any level [s].
     pub settle_time: Option<f64>,
     /// Share of its load that a joint may keep.
@@ -35,7 +35,7 @@ pub(super) struct ReleaseRule {
 
 /// Watches the torque during a contact for its fall to a small remainder that stands still.
 #[derive(Debug, Clone)]
-pub(super) struct ReleaseDetector {
+pub(crate) struct ReleaseDetector {
     rule: ReleaseRule,
     /// Greatest norm of a remainder's torques [Nm] and of its forces [N].
     limit: [f64; 2],
