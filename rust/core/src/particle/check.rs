@@ -1,106 +1,154 @@
-//! Whether a single push on an obstacle that stays explains what was measured, and for how long it has.
+//! Whether a single push on an obstacle that stays explains what was measured at the last poses.
 
-use super::fit::{Fit, Push, FITTED};
+use super::contacts::{Contacts, Task};
+use super::frames::Frames;
 use super::options::{FilterOptions, Likelihood, Motion};
-use super::schedule::NEW_POSE;
-use super::spring::{Place, Spring};
+use super::push::Push;
+use super::search::{Search, Told};
+use super::spring::Slope;
+use super::window::Window;
+use crate::chi_square::upper_limit;
+use crate::robot::Robot;
 
+/// Errors of torque may be so many times as large as is stated [1].
+const GRANTED: f64 = 3.0;
+/// Parameters of a push at one pose: its force and two coordinates on the surface; of an obstacle: its centre.
+const FITTED: usize = 3;
+const CENTRE: usize = 3;
 /// A slope of so many standard errors is none by chance (99.9 %).
 const CONFIRMED: f64 = 3.0;
-/// A stiffness is not in its range where even so many standard errors more are softer (99 %).
+/// Without torques to spare the point can be chosen so that the force follows the motion, whatever the truth: then only
+/// a far more exact slope confirms a push, of so many times the softest stiffness.
+const EXACT: f64 = 10.0;
+const CLEARLY_STIFFER: f64 = 3.0;
+/// A stiffness is not in its range where even so many standard errors do not bring it there (99 %).
 const EXCLUDED: f64 = 2.326;
-/// With no torque to spare, the point can be chosen so that the force follows the softest obstacle in the range, whatever
-/// the truth: then the stiffness is confirmed only from so many times the softest on.
-const CLEARLY_STIFFER: f64 = 2.0;
-/// A slope below so many standard errors takes a confirmation back: less than what gives one, so that a push whose
-/// motions tell little for a while is not doubted.
-const DOUBTED: f64 = 1.0;
-/// Updates for which both tests must have held before they are trusted, with torques to spare and without: what is no
-/// push holds them by chance only, in one motion and not in the next; a push holds them for ever.
-const HOLD: u32 = 5;
-const HOLD_WITHOUT_SPARE: u32 = 10;
+/// Poses that are needed, with torques to spare and without.
+const LEAST_POSES: usize = 4;
+const LEAST_POSES_WITHOUT_SPARE: usize = 8;
 
-/// Tests over the last updates.
+/// The test, and what it found at the last update.
 #[derive(Debug, Clone)]
 pub(super) struct Check {
-    fit: Fit,
-    spring: Spring,
-    /// Least stiffness of an obstacle [N/m]; none where no obstacle is assumed, which needs no motion then.
-    softest: Option<f64>,
+    torque_noise: Vec<f64>,
+    relative_noise: f64,
+    /// Torques that a push leaves over, one a velocity variable [Nm].
+    left: Vec<f64>,
+    window: Window,
+    /// None where no obstacle is assumed.
+    search: Option<Search>,
+    /// Least and greatest stiffness of an obstacle [N/m].
+    stiffness: [f64; 2],
     explained: bool,
-    /// Updates for which the tests have held, and are to hold.
-    held: u32,
-    hold: u32,
+    trusted: bool,
 }
 
 impl Check {
-    pub fn new(options: &FilterOptions, torque_noise: Vec<f64>) -> Self {
+    pub fn new(robot: &Robot, frames: &Frames, options: &FilterOptions, torque_noise: Vec<f64>) -> Self {
         // Only where an obstacle is assumed and its force is believed to follow the motion.
         let springy = options.motion == Motion::Curvature && options.likelihood == Likelihood::Gaussian;
         Check {
-            fit: Fit::new(torque_noise, options.relative_noise),
-            spring: Spring::default(),
-            softest: springy.then_some(options.stiffness_range[0]),
+            left: vec![0.0; torque_noise.len()],
+            torque_noise,
+            relative_noise: options.relative_noise,
+            window: Window::new(frames),
+            search: springy.then(|| Search::new(robot.links().len(), robot.nv())),
+            stiffness: options.stiffness_range,
             explained: true,
-            held: 0,
-            hold: HOLD,
+            trusted: false,
         }
     }
 
-    /// Forgets all updates: another contact is looked at.
+    /// Forgets all poses: another contact is looked at.
     pub fn restart(&mut self) {
-        self.fit.restart();
-        self.spring.restart();
-        self.explained = true;
-        self.held = 0;
+        self.window.clear();
+        if let Some(search) = &mut self.search {
+            search.restart();
+        }
+        (self.explained, self.trusted) = (true, false);
     }
 
-    /// Takes in the push that is told, and another one that may fit better, after a motion [m]; returns the root mean
-    /// square of the residual, in standard deviations of the stated noise.
-    pub fn take_in(&mut self, told: &Push<'_>, other: Option<&Push<'_>>, torque: &[f64], moved: f64) -> f64 {
-        let residual = self.fit.take_in(told, other, torque);
-        let (contradicted, confirmed) = match self.softest {
-            Some(softest) => self.follow(softest, told, moved),
-            None => (false, Some(true)),
+    /// Takes in the push that is told, and another one that may fit better; returns the root mean square of the torques
+    /// left over, in standard deviations of the stated noise.
+    pub fn take_in(&mut self, push: &Push<'_>, other: Option<&Push<'_>>, told: &Told, torque: &[f64]) -> f64 {
+        let own = self.left_over(push, torque);
+        let left = other.map_or(own, |other| self.left_over(other, torque).min(own));
+        let opened = self.window.take_in(push.frames, push.link, left);
+        if let (true, Some(search)) = (opened, &mut self.search) {
+            search.follow(self.window.newest(), self.window.before());
+        }
+        (self.explained, self.trusted) = match &push.robot.links()[push.link].surface {
+            Some(surface) if self.search.is_some() => {
+                let task =
+                    Task { window: &self.window, link: push.link, surface, measurement: push.measurement };
+                Self::judge(self.search.as_mut(), &task, told, torque.len(), self.stiffness)
+            }
+            _ => {
+                let poses = self.window.len();
+                let left: f64 = self.window.samples().iter().map(|sample| sample.left).sum();
+                let explained = left <= tolerance(poses * torque.len().saturating_sub(FITTED));
+                (explained, explained)
+            }
         };
-        self.explained = self.fit.explained() && !contradicted;
-        match confirmed {
-            Some(true) if self.explained => self.held = self.held.saturating_add(1),
-            // A motion that tells little confirms nothing, and takes nothing back.
-            None if self.explained => {}
-            _ => self.held = 0,
-        }
-        residual
+        (left / torque.len() as f64).sqrt()
     }
 
-    /// Takes in the force that is found; returns whether it contradicts an obstacle, and whether it confirms one.
-    fn follow(&mut self, softest: f64, told: &Push<'_>, moved: f64) -> (bool, Option<bool>) {
-        let Push { link, point, normal, .. } = *told;
-        if self.spring.link() != Some(link) {
-            self.held = 0;
-        }
-        let (gain, product) = told.response();
-        if gain > 0.0 {
-            let place = Place { link, pose: told.frames.links[link].pose, point, normal };
-            self.spring.take_in(place, product / gain, 1.0 / gain, (moved / NEW_POSE).min(1.0));
-        }
-        let Some(slope) = self.spring.slope() else { return (false, None) };
-        let contradicted = slope.value + EXCLUDED * slope.error < softest;
-        let spare = told.frames.links[link].joints() > FITTED;
-        self.hold = if spare { HOLD } else { HOLD_WITHOUT_SPARE };
-        let least = if spare { softest } else { CLEARLY_STIFFER * softest };
-        let kept = if spare { 0.0 } else { least };
-        let confirmed = slope.value >= (CONFIRMED * slope.error).max(least);
-        (contradicted, (confirmed || slope.value < (DOUBTED * slope.error).max(kept)).then_some(confirmed))
+    /// Whether one obstacle explains all poses, and whether their motion confirms it.
+    fn judge(
+        search: Option<&mut Search>,
+        task: &Task<'_>,
+        told: &Told,
+        joints: usize,
+        [softest, stiffest]: [f64; 2],
+    ) -> (bool, bool) {
+        let Some(search) = search else { return (true, true) };
+        let poses = task.window.len();
+        // Each pose has a force of its own.
+        let limit = tolerance((poses * joints.saturating_sub(1)).saturating_sub(CENTRE));
+        let spare = task.window.samples()[0].links[task.link].joints() > FITTED;
+        let (errors, least, enough) = if spare {
+            (CONFIRMED, softest, LEAST_POSES)
+        } else {
+            (EXACT, CLEARLY_STIFFER * softest, LEAST_POSES_WITHOUT_SPARE)
+        };
+        let explained = |contacts: &Contacts| {
+            let soft = |slope: Slope| slope.value + EXCLUDED * slope.error < softest;
+            contacts.misfit <= limit && !Slope::of(contacts, poses).is_some_and(soft)
+        };
+        let trusted = |contacts: &Contacts| {
+            poses >= enough
+                && contacts.misfit <= limit
+                && told.agrees(contacts)
+                && Slope::of(contacts, poses).is_some_and(|slope| {
+                    slope.value >= (errors * slope.error).max(least)
+                        && slope.value - EXCLUDED * slope.error <= stiffest
+                })
+        };
+        let contacts = search.improve(task, told, trusted);
+        (explained(contacts), trusted(contacts))
     }
 
-    /// Whether a single push explains the last updates.
+    /// Squared norm of the torques that the best force of a push leaves over, each over its stated noise.
+    fn left_over(&mut self, push: &Push<'_>, torque: &[f64]) -> f64 {
+        self.left.copy_from_slice(torque);
+        push.subtract(&mut self.left);
+        let noise =
+            self.torque_noise.iter().zip(torque).map(|(least, tau)| least.hypot(self.relative_noise * tau));
+        self.left.iter().zip(noise).map(|(left, noise)| (left / noise).powi(2)).sum()
+    }
+
+    /// Whether a single push explains the last poses.
     pub fn explained(&self) -> bool {
         self.explained
     }
 
-    /// Whether it has been confirmed for long enough to be trusted.
+    /// Whether it is confirmed, too.
     pub fn trusted(&self) -> bool {
-        self.held >= self.hold
+        self.trusted
     }
+}
+
+/// The largest misfit that errors explain, of so many redundant torques.
+fn tolerance(checks: usize) -> f64 {
+    GRANTED * GRANTED * upper_limit(checks)
 }

@@ -63,6 +63,27 @@ impl Frame {
         }
         (gram, products)
     }
+
+    /// Sets the torques that are left over of those measured without those of a force at a point, each over its noise;
+    /// returns the squared norm of those measured, and of those left over.
+    #[inline]
+    pub fn left_over(&self, point: &Vector3<f64>, force: &Vector3<f64>, left: &mut [f64]) -> (f64, f64) {
+        let moment = point.cross(force);
+        let mut squares = (0.0, 0.0);
+        for (left, screw) in left.iter_mut().zip(&self.screws) {
+            *left = screw.torque - (screw.linear.dot(force) + screw.angular.dot(&moment));
+            squares.0 += screw.torque * screw.torque;
+            squares.1 += *left * *left;
+        }
+        squares
+    }
+
+    /// Takes on the numbers of the same link at another step.
+    pub fn copy(&mut self, other: &Frame) {
+        self.pose = other.pose;
+        self.before = other.before;
+        self.screws.copy_from_slice(&other.screws);
+    }
 }
 
 impl Frame {
@@ -73,9 +94,14 @@ impl Frame {
 
     /// How far a point of the link moved at most since the step before [m].
     pub fn displacement(&self) -> f64 {
-        let centre = self.pose.transform_point(&self.center) - self.before.transform_point(&self.center);
+        self.apart(&self.before)
+    }
+
+    /// How far a point of the link is at most from where it is at another pose [m].
+    pub fn apart(&self, pose: &Pose) -> f64 {
+        let centre = self.pose.transform_point(&self.center) - pose.transform_point(&self.center);
         // Chord of the rotation at the rim: |R - R'| by Frobenius is sqrt(2) times that of a unit arm.
-        let turned = (self.pose.rotation - self.before.rotation).norm() / std::f64::consts::SQRT_2;
+        let turned = (self.pose.rotation - pose.rotation).norm() / std::f64::consts::SQRT_2;
         centre.norm() + turned * self.radius
     }
 }

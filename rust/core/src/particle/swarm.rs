@@ -8,7 +8,6 @@ use super::birth::{Births, PLACE};
 use super::check::Check;
 use super::columns::{Columns, Slice};
 use super::estimate::{ContactEstimate, Event};
-use super::fit::Push;
 use super::frames::Frames;
 use super::left_over::{turning, LeftOver};
 use super::likelihood::{Belief, Weighing};
@@ -18,9 +17,11 @@ use super::modes::{Modes, MOST_MODES};
 use super::motion::Move;
 use super::options::{FilterOptions, Likelihood, Motion};
 use super::parallel;
+use super::push::Push;
 use super::resampling::{effective_share, normalise};
 use super::schedule::Noise;
 use crate::detection::Gate;
+use super::search::Told;
 use crate::error::Result;
 use crate::math::random::Stream;
 use crate::robot::Robot;
@@ -82,8 +83,11 @@ impl Swarm {
         // All of it at once, so that a part is not filled in vain.
         drop(space::<[u8; PARTICLE]>(count)?);
         let torque_noise = FilterOptions::per_joint(&robot, "torque_noise", &options.torque_noise)?;
+        let births = Births::new(&robot, &wanted, &options)?;
+        let links = wanted.len();
+        let frames = Frames::new(&robot, wanted);
         Ok(Self {
-            check: Check::new(&options, torque_noise.clone()),
+            check: Check::new(&robot, &frames, &options, torque_noise.clone()),
             torque_noise,
             gate: Gate::with_hysteresis(
                 FilterOptions::per_joint(&robot, "torque_threshold", &options.torque_threshold)?,
@@ -93,9 +97,9 @@ impl Swarm {
             noise: vec![1.0; nv],
             turning: turning(&robot),
             felt: false,
-            births: Births::new(&robot, &wanted, &options)?,
-            estimate: ContactEstimate::new(wanted.len(), MOST_MODES),
-            frames: Frames::new(&robot, wanted),
+            births,
+            estimate: ContactEstimate::new(links, MOST_MODES),
+            frames,
             particles: Columns::new(count)?,
             spare: Columns::new(count)?,
             weights: filled(1.0 / count as f64, count)?,
@@ -315,7 +319,7 @@ impl Swarm {
         }
         let Some(link) = estimate.link else { return };
         let pose = &frames.links[link].pose;
-        let told = Push {
+        let push = Push {
             robot,
             frames,
             measurement: options.measurement,
@@ -325,9 +329,16 @@ impl Swarm {
         };
         // The mean of a mode need not fit where the surface is curved or has an edge; its best particle does.
         let best = (particles.point[left.best], particles.normal[left.best]);
-        let near = particles.link[left.best] as usize == link && (best.0 - told.point).norm() < MOVED_ON;
-        let other = near.then_some(Push { point: best.0, normal: best.1, ..told });
-        estimate.residual = check.take_in(&told, other.as_ref(), torque, moved);
+        let on_link = particles.link[left.best] as usize == link;
+        let near = on_link && (best.0 - push.point).norm() < MOVED_ON;
+        let other = near.then_some(Push { point: best.0, normal: best.1, ..push });
+        let told = Told {
+            point: estimate.point,
+            normal: estimate.normal,
+            local: push.point,
+            centre: on_link.then_some(particles.centre[left.best]),
+        };
+        estimate.residual = check.take_in(&push, other.as_ref(), &told, torque);
         estimate.explained = check.explained();
         // What is not explained is never sure, nor what has not been confirmed yet.
         estimate.ambiguous |= !check.trusted();
