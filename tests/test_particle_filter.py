@@ -5,15 +5,14 @@ from __future__ import annotations
 import subprocess
 import sys
 import threading
-from collections.abc import Callable
-from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from robots import example_arm, meshes, packaged
+from particle_runs import Which, arm, error, explored, follow
+from robots import meshes, packaged
 
 import contactsense as cs
 from contactsense import sim
@@ -21,58 +20,6 @@ from contactsense import sim
 CHI2_90 = 6.25  # three degrees of freedom
 # The packaged iiwa14 of simple solids, and the one with meshes.
 ARMS = [packaged, pytest.param(meshes, marks=pytest.mark.shared)]
-arm = packaged
-Which = Callable[[], tuple[cs.Robot, Any]]
-
-
-@cache
-def explored(link: int, seed: int, kind: str = "sphere", which: Which = packaged) -> sim.ContactRun:
-    """Forty motions of two degrees, three samples each."""
-    robot, model = which()
-    return scene_run(robot, model, f"iiwa_link_{link}", seed, kind, least_torque=1.0)
-
-
-def scene_run(
-    robot: cs.Robot,
-    model: Any,
-    link: str,
-    seed: int,
-    kind: str = "sphere",
-    *,
-    least_torque: float = 0.5,
-    stiffness: tuple[float, float] = (1e3, 1e4),
-) -> sim.ContactRun:
-    for chance in range(seed, seed + 500, 50):
-        try:
-            scene = sim.touch_scene(
-                robot,
-                model,
-                link,
-                kind=kind,
-                stiffness_range=stiffness,
-                least_torque=least_torque,
-                seed=chance,
-            )
-            path = sim.joint_exploration(robot, scene, pace=sim.Pace(motions=40, duration=0.25), seed=chance)
-        except cs.InputError:
-            continue
-        rows = slice(None, None, 4)
-        return sim.record_quasi_static(robot, scene.contact(robot), path.time[rows], path.q[rows])
-    raise AssertionError(f"no scene on {link}")
-
-
-def follow(
-    run: sim.ContactRun, noise: float = 0.0, robot: cs.Robot | None = None, **options: Any
-) -> cs.ContactEstimate:
-    generator = np.random.default_rng(3)
-    tracker = cs.ContactParticleFilter(robot or arm()[0], **options)
-    for q, torque in zip(run.q, run.external_torque, strict=True):
-        estimate = tracker.update(q, torque * (1.0 + noise * generator.standard_normal(torque.size)))
-    return estimate
-
-
-def error(estimate: cs.ContactEstimate, run: sim.ContactRun) -> float:
-    return float(np.linalg.norm(estimate.point - run.point[-1]))
 
 
 @pytest.mark.parametrize("which", ARMS)
@@ -292,102 +239,6 @@ def test_a_contact_that_moves_elsewhere_is_found_again() -> None:
     assert error(estimate, then) < 0.015
     # A jump of the pose is no motion to learn from.
     assert tracker.update(first.q[0] + 1.0, first.external_torque[0]).event == "jumped"
-
-
-def test_a_torque_that_nothing_explains_is_said_to_be_so() -> None:
-    robot, _ = arm()
-    tracker = cs.ContactParticleFilter(robot, particles=3000, links=["iiwa_link_2"])
-    # The wrist alone: no contact on link 2 does that.
-    torque = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 8.0, 5.0])
-    q = robot.neutral() + 0.3
-    for _ in range(8):
-        estimate = tracker.update(q, torque)
-    assert estimate.contact
-    assert not estimate.explained
-    assert estimate.ambiguous
-    assert estimate.residual > 5.0  # standard deviations of the noise
-    assert np.isfinite(estimate.point).all()
-    assert set(estimate.link_probabilities) == {"iiwa_link_2"}
-
-
-def violated(run: sim.ContactRun, robot: cs.Robot) -> dict[str, tuple[np.ndarray, list[np.ndarray]]]:
-    """Torques of what is no single push, and where the pushes among it are."""
-    link, last = run.link[0], run_links(robot)[-1]
-    # The second push, on another link.
-    other = next(name for name in run_links(robot)[::-1] if name != link)
-    sample = robot.surface(other).sample(1, seed=9)
-    signs = np.resize([1.0, -1.0, 1.0, 1.0, -1.0], robot.nv)
-    turned, loaded, second, places = [], [], [], []
-    for q in run.q:
-        rotation = robot.link_pose(q, link)[:3, :3]
-        turned.append(robot.jacobian(q, link)[3:].T @ rotation @ [3.0, -2.0, 4.0])
-        loaded.append(robot.jacobian(q, last, robot.link_pose(q, last)[:3, 3])[:3].T @ [0.0, 0.0, -15.0])
-        pose = robot.link_pose(q, other)
-        places.append(pose[:3, :3] @ sample.points[0] + pose[:3, 3])
-        second.append(robot.jacobian(q, other, places[-1])[:3].T @ pose[:3, :3] @ (-20.0 * sample.normals[0]))
-    torque = run.external_torque
-    return {
-        "bias": (torque + 0.3 * signs, [run.point]),
-        "moment": (np.array(turned), []),
-        "payload": (np.array(loaded), []),
-        "push and payload": (torque + np.array(loaded), [run.point]),
-        "pull": (-torque, []),
-        "two pushes": (torque + np.array(second), [run.point, np.array(places)]),
-    }
-
-
-def run_links(robot: cs.Robot) -> list[str]:
-    """Links that two joints or more move, from the base outwards."""
-    q = robot.neutral() + 0.3
-    count = {
-        name: int(np.any(np.abs(robot.jacobian(q, name)) > 1e-12, axis=0).sum()) for name in robot.link_names
-    }
-    return [name for name, joints in count.items() if joints >= 2]
-
-
-# Constants were chosen on other seeds of the iiwa14 and the panda.
-@pytest.mark.parametrize("which", ["iiwa14", "ur5", "xarm7"])
-def test_what_is_no_single_push_is_not_sure(which: str) -> None:
-    robot, model = packaged() if which == "iiwa14" else example_arm(which)
-    links = run_links(robot)
-    chosen = [links[1], links[2], links[4]]  # three joints, four and six, or so
-    runs = [scene_run(robot, model, link, seed) for seed, link in enumerate(chosen, 31)]
-    sure, wrong, pushes = 0, 0, []
-    for run in runs:
-        for torques, points in violated(run, robot).values():
-            tracker = cs.ContactParticleFilter(robot, particles=1000)
-            for row, (q, torque) in enumerate(zip(run.q, torques, strict=True)):
-                estimate = tracker.update(q, torque)
-                assert estimate.explained or estimate.ambiguous
-                if estimate.contact and not estimate.ambiguous:
-                    sure += 1
-                    wrong += all(np.linalg.norm(estimate.point - point[row]) > 0.05 for point in points)
-        pushes.append(follow(run, 0.1, robot, particles=1000))
-    assert wrong <= 0.1 * sure, (wrong, sure)
-    # The pushes alone, although noisy.
-    assert all(estimate.explained for estimate in pushes)
-    assert not pushes[-1].ambiguous
-
-
-def test_a_push_is_sure_once_motion_has_confirmed_it() -> None:
-    run = explored(6, 42)
-    tracker = cs.ContactParticleFilter(arm()[0], particles=3000)
-    sure = [
-        not tracker.update(q, torque).ambiguous for q, torque in zip(run.q, run.external_torque, strict=True)
-    ]
-    assert not any(sure[:5])
-    assert all(sure[25:])
-    # The same torque again and again is no motion: a pull would look the same.
-    still = cs.ContactParticleFilter(arm()[0], particles=3000)
-    assert all(still.update(run.q[0], run.external_torque[0]).ambiguous for _ in range(40))
-
-
-def test_a_soft_obstacle_is_sure_too() -> None:
-    robot, model = arm()
-    run = scene_run(robot, model, "iiwa_link_6", 45, stiffness=(4e2, 5e2))
-    estimate = follow(run, particles=3000)
-    assert error(estimate, run) < 0.02
-    assert not estimate.ambiguous
 
 
 def test_too_many_particles_for_the_memory_are_refused() -> None:

@@ -385,7 +385,7 @@ class ContactEstimate:
     def ambiguous(self) -> bool: ...
     @property
     def explained(self) -> bool:
-        """Whether a single push explains the torques of the last updates; otherwise `ambiguous` is True."""
+        """Whether a single push explains the torques at the last poses; otherwise `ambiguous` is True."""
 
     @property
     def residual(self) -> float:

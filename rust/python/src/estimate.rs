@@ -148,17 +148,17 @@ impl PyContactEstimate {
         PyTuple::new(py, modes)
     }
 
-    /// The data do not say which link, or where on it, or nothing has confirmed yet that it is a single push: over some
-    /// updates with motion the torques fit one, and the force follows the link's motion as an obstacle's that stays.
+    /// The data do not say which link, or where on it, or motion has not confirmed yet that it is a single push: one obstacle
+    /// that stays explains the torques at the last poses, touches the link near `point`, and its force follows the motion.
     #[getter]
     fn ambiguous(&self) -> bool {
         self.estimate.ambiguous
     }
 
-    /// Whether a single push explains the torques of the last updates: their mean residual is within what the stated noise
-    /// and its scatter allow (a chi-square test at 99 %), and the force
-    /// follows the motion no less than on the softest obstacle of `stiffness_range` (another one at 99 %). Where not, the
-    /// estimate is ambiguous, too: two contacts, a moment, a payload, a pull, or biased torques.
+    /// Whether a push by one obstacle that stays explains the torques at the last poses, 24 at most and each 5 mm from the one
+    /// before: what is left over is within three times the stated noise (a chi-square test at 99 %), and the force follows the
+    /// motion no less than on the softest obstacle of `stiffness_range` (another one at 99 %). Where not, the estimate is
+    /// ambiguous, too: two contacts, a moment, a payload, a pull, or biased torques.
     #[getter]
     fn explained(&self) -> bool {
         self.estimate.explained

@@ -77,55 +77,21 @@ impl Check {
         if let (true, Some(search)) = (opened, &mut self.search) {
             search.follow(self.window.newest(), self.window.before());
         }
-        (self.explained, self.trusted) = match &push.robot.links()[push.link].surface {
-            Some(surface) if self.search.is_some() => {
-                let task =
-                    Task { window: &self.window, link: push.link, surface, measurement: push.measurement };
-                Self::judge(self.search.as_mut(), &task, told, torque.len(), self.stiffness)
+        let surface = push.robot.links()[push.link].surface.as_ref();
+        (self.explained, self.trusted) = match (&mut self.search, surface) {
+            (Some(search), Some(surface)) => {
+                let Push { link, measurement, .. } = *push;
+                let task = Task { window: &self.window, link, surface, measurement };
+                judge(search, &task, told, torque.len(), self.stiffness)
             }
             _ => {
-                let poses = self.window.len();
+                let checks = self.window.len() * torque.len().saturating_sub(FITTED);
                 let left: f64 = self.window.samples().iter().map(|sample| sample.left).sum();
-                let explained = left <= tolerance(poses * torque.len().saturating_sub(FITTED));
+                let explained = left <= tolerance(checks);
                 (explained, explained)
             }
         };
         (left / torque.len() as f64).sqrt()
-    }
-
-    /// Whether one obstacle explains all poses, and whether their motion confirms it.
-    fn judge(
-        search: Option<&mut Search>,
-        task: &Task<'_>,
-        told: &Told,
-        joints: usize,
-        [softest, stiffest]: [f64; 2],
-    ) -> (bool, bool) {
-        let Some(search) = search else { return (true, true) };
-        let poses = task.window.len();
-        // Each pose has a force of its own.
-        let limit = tolerance((poses * joints.saturating_sub(1)).saturating_sub(CENTRE));
-        let spare = task.window.samples()[0].links[task.link].joints() > FITTED;
-        let (errors, least, enough) = if spare {
-            (CONFIRMED, softest, LEAST_POSES)
-        } else {
-            (EXACT, CLEARLY_STIFFER * softest, LEAST_POSES_WITHOUT_SPARE)
-        };
-        let explained = |contacts: &Contacts| {
-            let soft = |slope: Slope| slope.value + EXCLUDED * slope.error < softest;
-            contacts.misfit <= limit && !Slope::of(contacts, poses).is_some_and(soft)
-        };
-        let trusted = |contacts: &Contacts| {
-            poses >= enough
-                && contacts.misfit <= limit
-                && told.agrees(contacts)
-                && Slope::of(contacts, poses).is_some_and(|slope| {
-                    slope.value >= (errors * slope.error).max(least)
-                        && slope.value - EXCLUDED * slope.error <= stiffest
-                })
-        };
-        let contacts = search.improve(task, told, trusted);
-        (explained(contacts), trusted(contacts))
     }
 
     /// Squared norm of the torques that the best force of a push leaves over, each over its stated noise.
@@ -146,6 +112,40 @@ impl Check {
     pub fn trusted(&self) -> bool {
         self.trusted
     }
+}
+
+/// Whether one obstacle, of a stiffness in the range, explains all poses, and whether their motion confirms it.
+fn judge(
+    search: &mut Search,
+    task: &Task<'_>,
+    told: &Told,
+    joints: usize,
+    [softest, stiffest]: [f64; 2],
+) -> (bool, bool) {
+    let poses = task.window.len();
+    let chain = task.window.chain(task.link);
+    // Each pose has a force of its own. The other joints are tested apart, lest many of them at rest hide a misfit.
+    let limit = tolerance((poses * chain.saturating_sub(1)).saturating_sub(CENTRE));
+    let others = tolerance(poses * joints.saturating_sub(chain));
+    let (errors, least, enough) = if chain > FITTED {
+        (CONFIRMED, softest, LEAST_POSES)
+    } else {
+        (EXACT, CLEARLY_STIFFER * softest, LEAST_POSES_WITHOUT_SPARE)
+    };
+    let too_soft = |slope: Slope| slope.value + EXCLUDED * slope.error < softest;
+    let confirmed = |slope: Slope| {
+        slope.value >= (errors * slope.error).max(least) && slope.value - EXCLUDED * slope.error <= stiffest
+    };
+    let fits = |contacts: &Contacts| contacts.misfit <= limit && contacts.others <= others;
+    let trusted = |contacts: &Contacts| {
+        poses >= enough
+            && fits(contacts)
+            && told.agrees(contacts)
+            && Slope::of(contacts, poses).is_some_and(confirmed)
+    };
+    let contacts = search.improve(task, told, trusted);
+    let explained = fits(contacts) && !Slope::of(contacts, poses).is_some_and(too_soft);
+    (explained, trusted(contacts))
 }
 
 /// The largest misfit that errors explain, of so many redundant torques.

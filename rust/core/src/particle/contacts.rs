@@ -20,8 +20,10 @@ pub(super) struct Task<'a> {
 /// Contacts of a link with an obstacle at the poses of a window.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Contacts {
-    /// Squared norm of the torques that are left over, each over its noise.
+    /// Squared norm of the torques that are left over of the joints that move the link, each over its noise.
     pub misfit: f64,
+    /// That of all torques of the other joints, which no force on the link explains.
+    pub others: f64,
     /// One a pose: normal force [N], its variance by the stated noise [N^2], and the distance from the centre to the
     /// surface, negative inside [m].
     pub force: [f64; POSES],
@@ -35,6 +37,7 @@ impl Default for Contacts {
     fn default() -> Self {
         Contacts {
             misfit: f64::INFINITY,
+            others: f64::INFINITY,
             force: [0.0; POSES],
             variance: [0.0; POSES],
             distance: [0.0; POSES],
@@ -51,6 +54,7 @@ pub(super) struct Contact {
     pub force: f64,
     pub variance: f64,
     pub misfit: f64,
+    pub others: f64,
 }
 
 impl Contact {
@@ -78,8 +82,8 @@ impl Contact {
             triangle: near.triangle,
             force: best.normal,
             variance: best.variance,
-            // What the other joints measured no force on this link explains.
-            misfit: (sample.measured - chain).max(0.0) + left + across,
+            misfit: left + across,
+            others: (sample.measured - chain).max(0.0),
         }
     }
 }

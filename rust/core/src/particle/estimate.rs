@@ -79,11 +79,11 @@ pub struct ContactEstimate {
     pub link_probabilities: Vec<f64>,
     /// Best first.
     pub modes: Vec<Mode>,
-    /// The data do not say which link or where on it, or have not confirmed a push for some updates with motion.
+    /// The data do not say which link or where on it, or motion has not confirmed yet that it is a push.
     pub ambiguous: bool,
-    /// Whether a single push explains the torques of the last updates (see [`residual`](Self::residual)): their mean
-    /// residual is within what the noise allows (a chi-square test at 99 %), and nothing shows that the
-    /// force follows the motion less than on the softest obstacle sought. Where not, the contact is ambiguous, too.
+    /// Whether a push by one obstacle that stays explains the torques at the last poses: what is left over is within three
+    /// times the stated noise (a chi-square test at 99 %), and nothing shows that the force follows the motion less than on
+    /// the softest obstacle sought. Where not, the contact is ambiguous, too.
     pub explained: bool,
     /// Root mean square, over all joints, of the torque that the best push leaves over, in standard deviations of the
     /// stated noise: about one or less where all is explained.

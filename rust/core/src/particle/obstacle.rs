@@ -84,14 +84,14 @@ impl Obstacle {
 
     /// Sets the contacts with the centre where it is.
     fn evaluate(&mut self, task: &Task<'_>, residuals: &mut Residuals) {
-        self.contacts.misfit = 0.0;
+        (self.contacts.misfit, self.contacts.others) = (0.0, 0.0);
         for (k, sample) in task.window.samples().iter().enumerate() {
-            self.contacts.misfit += self.touch(task, k, sample, &mut residuals.0[0]);
+            self.touch(task, k, sample, &mut residuals.0[0]);
         }
     }
 
-    /// Sets the contact at a pose; returns the squared norm of the torques left over.
-    fn touch(&mut self, task: &Task<'_>, k: usize, sample: &Sample, residual: &mut [f64]) -> f64 {
+    /// Sets the contact at a pose, and adds what it leaves over.
+    fn touch(&mut self, task: &Task<'_>, k: usize, sample: &Sample, residual: &mut [f64]) {
         let contact = Contact::of(task, sample, &self.centre, self.triangles[k], residual);
         self.triangles[k] = contact.triangle;
         self.contacts.force[k] = contact.force;
@@ -100,17 +100,18 @@ impl Obstacle {
         if k == task.window.newest() {
             self.contacts.point = contact.point;
         }
-        contact.misfit
+        self.contacts.misfit += contact.misfit;
+        self.contacts.others += contact.others;
     }
 
     /// Sets the contacts; returns the normal equations of a step: the Gram matrix of the residuals' derivatives, and
     /// their product with the residuals.
     fn linearise(&mut self, task: &Task<'_>, residuals: &mut Residuals) -> (Matrix3<f64>, Vector3<f64>) {
         let (mut gram, mut slope) = (Matrix3::zeros(), Vector3::zeros());
-        self.contacts.misfit = 0.0;
+        (self.contacts.misfit, self.contacts.others) = (0.0, 0.0);
         for (k, sample) in task.window.samples().iter().enumerate() {
             let [here, moved @ ..] = &mut residuals.0;
-            self.contacts.misfit += self.touch(task, k, sample, here);
+            self.touch(task, k, sample, here);
             for (axis, moved) in moved.iter_mut().enumerate() {
                 let mut centre = self.centre;
                 centre[axis] += STEP;

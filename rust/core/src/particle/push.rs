@@ -12,7 +12,7 @@ pub(super) struct BestForce {
     pub force: Vector3<f64>,
     /// Its part along the inward normal, never negative: a push does not pull [N].
     pub normal: f64,
-    /// Variance of that part by the stated noise [N^2].
+    /// Variance of that part by the stated noise, infinite where no torque shows it [N^2].
     pub variance: f64,
     /// Its parts across the normal, over their standard deviations.
     pub across: [f64; 2],
@@ -27,8 +27,8 @@ impl BestForce {
         normal: &Vector3<f64>,
     ) -> BestForce {
         let (gain, product) = frame.response(point, normal);
-        let variance = if gain > 0.0 { 1.0 / gain } else { 0.0 };
         let size = if gain > 0.0 && product > 0.0 { product / gain } else { 0.0 };
+        let variance = gain.recip();
         let bare = BestForce { force: -normal * size, normal: size, variance, across: [0.0; 2] };
         match measurement {
             Measurement::FrictionCone(friction) if size > 0.0 => {

@@ -2,7 +2,7 @@
 //!
 //! What pulls at a link, weighs on it or turns it may look like a push somewhere at every single pose, but its force does
 //! not rise where that place moves towards the obstacle and fall where it moves away. So a line is fitted to the forces
-//! over how deep the obstacle is in the link (linear regression): its slope is the contact's stiffness.
+//! over how deep the obstacle is in the link (weighted linear regression): its slope is the contact's stiffness.
 
 use super::contacts::Contacts;
 
@@ -22,23 +22,28 @@ impl Slope {
         if poses <= FITTED {
             return None;
         }
-        let count = poses as f64;
-        let depth = contacts.distance[..poses].iter().map(|distance| -distance);
-        let force = &contacts.force[..poses];
-        let mean_depth = depth.clone().sum::<f64>() / count;
-        let mean_force = force.iter().sum::<f64>() / count;
+        let numbers = contacts.distance.iter().zip(&contacts.force).zip(&contacts.variance).take(poses);
+        // Each pose counts by how exact its force is [1/N^2].
+        let weighted =
+            || numbers.clone().map(|((distance, force), variance)| (variance.recip(), -distance, force));
+        let (mut weight, mut depth, mut force) = (0.0, 0.0, 0.0);
+        for (w, d, f) in weighted() {
+            weight += w;
+            depth += w * d;
+            force += w * f;
+        }
+        let mean = (depth / weight, force / weight);
         let (mut spread, mut both, mut scatter) = (0.0, 0.0, 0.0);
-        for (depth, force) in depth.clone().zip(force) {
-            spread += (depth - mean_depth).powi(2);
-            both += (depth - mean_depth) * (force - mean_force);
+        for (w, d, f) in weighted() {
+            spread += w * (d - mean.0).powi(2);
+            both += w * (d - mean.0) * (f - mean.1);
         }
         let value = both / spread;
-        for (depth, force) in depth.zip(force) {
-            scatter += (force - mean_force - value * (depth - mean_depth)).powi(2);
+        for (w, d, f) in weighted() {
+            scatter += w * (f - mean.1 - value * (d - mean.0)).powi(2);
         }
-        // Errors of the stated size may be slow, so that the scatter does not show them.
-        let noise = contacts.variance[..poses].iter().sum::<f64>() / count;
-        let error = ((scatter / (count - FITTED as f64) + noise) / spread).sqrt();
+        // Errors of the stated size, one in these units, may be slow, so that the scatter does not show them.
+        let error = ((scatter / (poses - FITTED) as f64 + 1.0) / spread).sqrt();
         (value.is_finite() && error.is_finite()).then_some(Slope { value, error })
     }
 }
@@ -70,6 +75,7 @@ mod tests {
         for (k, force) in contacts.force.iter_mut().enumerate() {
             *force = k as f64;
         }
+        contacts.variance.fill(1.0);
         assert_eq!(Slope::of(&contacts, POSES), None);
     }
 }

@@ -46,6 +46,11 @@ impl Window {
         &self.samples[..self.len]
     }
 
+    /// How many joints move a link.
+    pub fn chain(&self, link: usize) -> usize {
+        self.samples[self.newest].links[link].joints()
+    }
+
     /// Place of the newest one among them.
     pub fn newest(&self) -> usize {
         self.newest
