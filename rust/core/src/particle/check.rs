@@ -27,6 +27,9 @@ const EXCLUDED: f64 = 2.326;
 const LEAST_POSES: usize = 4;
 const LEAST_POSES_WITHOUT_SPARE: usize = 8;
 
+/// A misfit below this share of the largest one needs no search for a better one.
+const AMPLE: f64 = 0.25;
+
 /// The test, and what it found at the last update.
 #[derive(Debug, Clone)]
 pub(super) struct Check {
@@ -143,7 +146,8 @@ fn judge(
             && told.agrees(contacts)
             && Slope::of(contacts, poses).is_some_and(confirmed)
     };
-    let contacts = search.improve(task, told, trusted);
+    let done = |contacts: &Contacts| contacts.misfit <= AMPLE * limit && trusted(contacts);
+    let contacts = search.improve(task, told, done);
     let explained = fits(contacts) && !Slope::of(contacts, poses).is_some_and(too_soft);
     (explained, trusted(contacts))
 }

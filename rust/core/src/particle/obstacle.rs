@@ -19,6 +19,8 @@ const DAMPING: f64 = 1e-3;
 const LEAST_DAMPING: f64 = 1e-7;
 const MOST_DAMPING: f64 = 1e3;
 const DAMPING_FACTOR: f64 = 5.0;
+/// A step that leaves more than this share of the misfit has arrived.
+const SETTLED: f64 = 0.999;
 
 /// Residuals at a pose: with the centre where it is, and moved along each axis.
 #[derive(Debug, Clone)]
@@ -59,26 +61,31 @@ impl Obstacle {
         self.triangles[pose] = self.triangles[before];
     }
 
-    /// Takes one step towards the best centre.
-    pub fn improve(&mut self, task: &Task<'_>, residuals: &mut Residuals) {
+    /// Takes one step towards the best centre; returns whether it gained next to nothing, so that another will not either.
+    pub fn improve(&mut self, task: &Task<'_>, residuals: &mut Residuals) -> bool {
         let (gram, slope) = self.linearise(task, residuals);
         let curvature = gram.trace() / 3.0;
         let damped = gram + Matrix3::identity() * (curvature * self.damping);
-        let Some(mut step) = damped.cholesky().map(|factor| -factor.solve(&slope)) else { return };
+        let Some(mut step) = damped.cholesky().map(|factor| -factor.solve(&slope)) else {
+            return true;
+        };
         let length = step.norm();
         if !length.is_finite() {
-            return;
+            return true;
         }
         if length > FARTHEST {
             step *= FARTHEST / length;
         }
         let mut moved = Obstacle { centre: self.centre + step, ..self.clone() };
         moved.evaluate(task, residuals);
-        if moved.contacts.misfit < self.contacts.misfit {
+        let before = self.contacts.misfit;
+        if moved.contacts.misfit < before {
             *self = moved;
             self.damping = (self.damping / DAMPING_FACTOR).max(LEAST_DAMPING);
+            self.contacts.misfit > SETTLED * before
         } else {
             self.damping = (self.damping * DAMPING_FACTOR).min(MOST_DAMPING);
+            self.damping > 1.0
         }
     }
 

@@ -3,18 +3,22 @@
 use nalgebra::Vector3;
 
 use super::contacts::{Contacts, Task};
+use super::measurement::across;
 use super::obstacle::{Obstacle, Residuals};
 use super::window::POSES;
 
 /// Steps an update from the obstacle that was found before, and from another start. With few poses a step costs less,
 /// and more are taken, so that all is found as soon as the poses show it.
 const STEPS: usize = 1;
-const RIVAL_STEPS: usize = 2;
-const MOST_STEPS: usize = 8;
+const RIVAL_STEPS: usize = 3;
+const MOST_STEPS: usize = 12;
 /// Steps after which another start is given up: a fit that converges has done so.
 const PATIENCE: usize = 12;
-/// Starts: the best particle's obstacle, and small and large ones at the told point, with radii of [m].
+/// Starts: the best particle's obstacle, small and large ones at the told point, with radii of [m], and some so far beside
+/// it [m], since the told point may be one of several that fit about as well.
 const RADII: [f64; 2] = [0.01, 0.05];
+const BESIDE: f64 = 0.03;
+const SIDES: usize = 4;
 /// A contact farther from the told one is another [m].
 const APART: f64 = 0.05;
 
@@ -36,11 +40,19 @@ impl Told {
 
     /// The centre to begin with at a turn.
     fn start(&self, turn: usize) -> Vector3<f64> {
-        let count = RADII.len() + usize::from(self.centre.is_some());
-        match (turn % count, self.centre) {
-            (0, Some(centre)) => centre,
-            (k, _) => self.point + self.normal * RADII[k % RADII.len()],
-        }
+        let first = across(&self.normal);
+        let second = self.normal.cross(&first);
+        let beside = |aside: Vector3<f64>| self.point + self.normal * BESIDE + aside * BESIDE;
+        // The best particle knows more at every update.
+        let particle = self.centre.filter(|_| turn.is_multiple_of(2));
+        particle.unwrap_or_else(|| match turn / 2 % (RADII.len() + SIDES) {
+            0 => self.point + self.normal * RADII[0],
+            1 => self.point + self.normal * RADII[1],
+            2 => beside(first),
+            3 => beside(-first),
+            4 => beside(second),
+            _ => beside(-second),
+        })
     }
 }
 
@@ -86,19 +98,14 @@ impl Search {
         }
     }
 
-    /// Searches on, from other starts too where the contacts found are not trusted; returns those that fit best.
-    pub fn improve(
-        &mut self,
-        task: &Task<'_>,
-        told: &Told,
-        trusted: impl Fn(&Contacts) -> bool,
-    ) -> &Contacts {
+    /// Searches on, from other starts too until that is done; returns the contacts that fit best.
+    pub fn improve(&mut self, task: &Task<'_>, told: &Told, done: impl Fn(&Contacts) -> bool) -> &Contacts {
         let more = POSES / task.window.len().max(1);
         let found = self.found[task.link].get_or_insert_with(|| Obstacle::at(told.start(0)));
         for _ in 0..(STEPS * more).min(MOST_STEPS) {
             found.improve(task, &mut self.residuals);
         }
-        if trusted(found.contacts()) {
+        if done(found.contacts()) {
             return found.contacts();
         }
         let kept = self.rival.take().filter(|rival| rival.link == task.link && rival.steps < PATIENCE);
@@ -107,8 +114,11 @@ impl Search {
             Rival { link: task.link, obstacle: Obstacle::at(told.start(self.turn)), steps: 0 }
         });
         for _ in 0..(RIVAL_STEPS * more).min(MOST_STEPS) {
-            rival.obstacle.improve(task, &mut self.residuals);
-            rival.steps += 1;
+            let settled = rival.obstacle.improve(task, &mut self.residuals);
+            rival.steps = if settled { PATIENCE } else { rival.steps + 1 };
+            if settled {
+                break;
+            }
         }
         if rival.obstacle.contacts().misfit < found.contacts().misfit {
             std::mem::swap(found, &mut rival.obstacle);
