@@ -19,6 +19,8 @@ const DAMPING: f64 = 1e-3;
 const LEAST_DAMPING: f64 = 1e-7;
 const MOST_DAMPING: f64 = 1e3;
 const DAMPING_FACTOR: f64 = 5.0;
+/// From here on steps are so short that another start does better.
+const HOPELESS: f64 = 1.0;
 /// A step that leaves more than this share of the misfit has arrived.
 const SETTLED: f64 = 0.999;
 
@@ -85,7 +87,7 @@ impl Obstacle {
             self.contacts.misfit > SETTLED * before
         } else {
             self.damping = (self.damping * DAMPING_FACTOR).min(MOST_DAMPING);
-            self.damping > 1.0
+            self.damping > HOPELESS
         }
     }
 
