@@ -123,7 +123,7 @@ def test_a_push_on_an_outer_link_is_sure_after_few_poses(noise: float, which: An
         for q, torque in zip(run.q, run.external_torque, strict=True):
             estimate = tracker.update(q, torque * (1.0 + noise * generator.standard_normal(torque.size)))
             sure.append(not estimate.ambiguous)
-        # Motions of three updates each; measured: from the thirteenth update on at the latest, 83 % of them or more.
+        # Motions of three updates each. Measured: sure by the thirteenth update, then at 83 % or more.
         assert any(sure[:18])
         assert np.mean(sure[18:]) > 0.75
 
