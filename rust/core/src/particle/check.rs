@@ -7,7 +7,7 @@ use super::push::Push;
 use super::search::{Search, Told};
 use super::spring::Slope;
 use super::window::Window;
-use crate::chi_square::upper_limit;
+use crate::math::chi_square::upper_limit;
 use crate::robot::Robot;
 
 /// Errors of torque may be so many times as large as is stated [1].
