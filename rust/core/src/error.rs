@@ -1,5 +1,7 @@
 //! The one error type; each kind has its exception in Python.
 
+use std::borrow::Cow;
+
 /// What went wrong. The message names the thing and says what would be right.
 ///
 /// ```
@@ -7,7 +9,7 @@
 ///
 /// match Robot::example_arm().check_configuration(&[0.0; 6]) {
 ///     Err(Error::Input { argument, problem, .. }) => {
-///         assert_eq!((argument.as_str(), problem.as_str()), ("q", "expected 7 numbers, got 6"));
+///         assert_eq!((argument.as_ref(), problem.as_str()), ("q", "expected 7 numbers, got 6"));
 ///     }
 ///     other => panic!("{other:?}"),
 /// }
@@ -26,7 +28,7 @@ pub enum Error {
     #[non_exhaustive]
     Input {
         /// Name of the argument or option.
-        argument: String,
+        argument: Cow<'static, str>,
         /// What is wrong with it, and what would be right.
         problem: String,
     },
@@ -37,7 +39,7 @@ pub enum Error {
 
 impl Error {
     /// An argument that cannot be used, and why.
-    pub fn input(argument: impl Into<String>, problem: impl Into<String>) -> Self {
+    pub fn input(argument: impl Into<Cow<'static, str>>, problem: impl Into<String>) -> Self {
         Error::Input { argument: argument.into(), problem: problem.into() }
     }
 }

@@ -104,7 +104,8 @@ fn a_tick_allocates_nothing() {
             assert!(observer.update(&q[1..], &v, &tau, None, None).is_err());
         };
         // The message of an error may allocate; that is no tick of the control loop.
-        assert!(allocations(work) <= 1, "observer of {}", robot.name());
+        let made = allocations(work);
+        assert!(made <= 1, "observer of {}: {made} allocations", robot.name());
 
         let torques = touches(&robot, &q);
         let mut isolator =

@@ -139,7 +139,7 @@ impl FilterOptions {
     }
 
     /// One positive number a velocity variable.
-    pub(super) fn per_joint(robot: &Robot, name: &str, values: &[f64]) -> Result<Vec<f64>> {
+    pub(super) fn per_joint(robot: &Robot, name: &'static str, values: &[f64]) -> Result<Vec<f64>> {
         let all = robot.per_velocity(name, values)?;
         match all.iter().find(|x| !(LEAST_TORQUE..LARGEST).contains(*x)) {
             Some(value) => Err(Error::input(name, format!("must be at least {LEAST_TORQUE:e}, got {value}"))),
@@ -148,7 +148,7 @@ impl FilterOptions {
     }
 }
 
-fn whole(name: &str, value: usize, range: RangeInclusive<usize>) -> Result<()> {
+fn whole(name: &'static str, value: usize, range: RangeInclusive<usize>) -> Result<()> {
     if range.contains(&value) {
         return Ok(());
     }
@@ -156,7 +156,7 @@ fn whole(name: &str, value: usize, range: RangeInclusive<usize>) -> Result<()> {
     Err(Error::input(name, format!("must be a whole number from {low} to {high}, got {value}")))
 }
 
-fn range(name: &str, [low, high]: [f64; 2]) -> Result<()> {
+fn range(name: &'static str, [low, high]: [f64; 2]) -> Result<()> {
     if low > 0.0 && low <= high && high < 1e12 {
         return Ok(());
     }

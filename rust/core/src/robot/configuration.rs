@@ -12,7 +12,7 @@ pub const LARGEST: f64 = 1e60;
 
 /// Checks that `values` has `length` finite entries of a size that can be computed with.
 #[inline]
-pub(crate) fn check_vector(argument: &str, values: &[f64], length: usize) -> Result<()> {
+pub(crate) fn check_vector(argument: &'static str, values: &[f64], length: usize) -> Result<()> {
     if values.len() != length {
         return Err(wrong_length(argument, values.len(), length));
     }
@@ -24,12 +24,12 @@ pub(crate) fn check_vector(argument: &str, values: &[f64], length: usize) -> Res
 }
 
 #[cold]
-fn wrong_length(argument: &str, found: usize, wanted: usize) -> Error {
+fn wrong_length(argument: &'static str, found: usize, wanted: usize) -> Error {
     Error::input(argument, format!("expected {wanted} numbers, got {found}"))
 }
 
 #[cold]
-fn not_finite(argument: &str, values: &[f64]) -> Error {
+fn not_finite(argument: &'static str, values: &[f64]) -> Error {
     let index = values.iter().position(|x| x.is_nan() || x.abs() >= LARGEST).unwrap_or(0);
     let value = values[index];
     Error::input(argument, format!("entry {index} is {value}; all must be finite and below {LARGEST:e}"))
@@ -74,13 +74,13 @@ impl Robot {
     /// # Errors
     /// [`Error::Input`] names the argument.
     #[inline]
-    pub fn check_tangent(&self, argument: &str, values: &[f64]) -> Result<()> {
+    pub fn check_tangent(&self, argument: &'static str, values: &[f64]) -> Result<()> {
         check_vector(argument, values, self.nv())
     }
 
     /// One number for each velocity variable, from as many or from one that holds for all; checked as by
     /// [`check_tangent`](Self::check_tangent).
-    pub(crate) fn per_velocity(&self, argument: &str, values: &[f64]) -> Result<Vec<f64>> {
+    pub(crate) fn per_velocity(&self, argument: &'static str, values: &[f64]) -> Result<Vec<f64>> {
         let all = match values {
             [one] => vec![*one; self.nv()],
             _ if values.len() == self.nv() => values.to_vec(),
@@ -101,7 +101,7 @@ impl Robot {
     /// # Errors
     /// [`Error::Input`] names the argument.
     #[inline]
-    pub fn check_torque(&self, argument: &str, tau: &[f64]) -> Result<()> {
+    pub fn check_torque(&self, argument: &'static str, tau: &[f64]) -> Result<()> {
         if self.floating_base() && tau.len() == self.nv() {
             check_vector(argument, tau, self.nv())
         } else {
