@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use contactsense::particle::{
-    ContactParticleFilter, FilterOptions, Likelihood, Measurement, Motion, Schedule,
+    ContactParticleFilter, FilterOptions, ForceModel, Likelihood, Motion, Schedule,
 };
 use contactsense::robot::Robot;
 use numpy::{PyArray1, PyArray2};
@@ -97,7 +97,7 @@ impl PyContactParticleFilter {
         torque_threshold: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let py = robot.py();
-        let cone = Measurement::FrictionCone(friction.map_or(0.5, |friction| friction.0));
+        let cone = ForceModel::FrictionCone(friction.map_or(0.5, |friction| friction.0));
         cone.check().map_err(|error| to_python(py, error))?;
         let mut options = FilterOptions {
             motion: motion.among(
@@ -109,10 +109,10 @@ impl PyContactParticleFilter {
                     ("fixed_in_world", Motion::FixedInWorld),
                 ],
             )?,
-            measurement: measurement.among(
+            force_model: measurement.among(
                 py,
                 "measurement",
-                &[("normal", Measurement::Normal), ("friction_cone", cone)],
+                &[("normal", ForceModel::Normal), ("friction_cone", cone)],
             )?,
             likelihood: likelihood.among(
                 py,

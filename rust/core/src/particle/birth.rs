@@ -77,17 +77,17 @@ impl Births {
         for k in 0..count {
             // Every place once where there are as many; otherwise evenly among the links.
             let place = (k as u128 * self.places.len() as u128 / count as u128) as usize;
-            self.bear(frames, random, particles, k, place);
+            self.make(frames, random, particles, k, place);
         }
     }
 
     /// Makes particle k anew, at a place chosen at random.
     pub fn anywhere(&self, frames: &Frames, random: &Stream, particles: &mut Columns, k: usize) {
         let place = (random.uniform(DRAWS * k as u64) * self.places.len() as f64) as usize;
-        self.bear(frames, random, particles, k, place);
+        self.make(frames, random, particles, k, place);
     }
 
-    fn bear(&self, frames: &Frames, random: &Stream, particles: &mut Columns, k: usize, place: usize) {
+    fn make(&self, frames: &Frames, random: &Stream, particles: &mut Columns, k: usize, place: usize) {
         let Some((link, place)) = self.places.get(place) else { return };
         let log_uniform = |[low, high]: [f64; 2], draw: u64| {
             (low + (high - low) * random.uniform(DRAWS * k as u64 + draw)).exp()

@@ -4,7 +4,7 @@ use super::contacts::{Contacts, Task};
 use super::frames::Frames;
 use super::options::{FilterOptions, Likelihood, Motion};
 use super::push::Push;
-use super::search::{Search, Told};
+use super::search::{EstimatedPush, Search};
 use super::spring::Slope;
 use super::window::Window;
 use crate::math::chi_square::upper_limit;
@@ -71,9 +71,15 @@ impl Check {
         (self.explained, self.trusted) = (true, false);
     }
 
-    /// Takes in the push that is told, and another one that may fit better; returns the root mean square of the torques
+    /// Takes in the estimated push, and another one that may fit better; returns the root mean square of the torques
     /// left over, in standard deviations of the stated noise.
-    pub fn take_in(&mut self, push: &Push<'_>, other: Option<&Push<'_>>, told: &Told, torque: &[f64]) -> f64 {
+    pub fn take_in(
+        &mut self,
+        push: &Push<'_>,
+        other: Option<&Push<'_>>,
+        estimated: &EstimatedPush,
+        torque: &[f64],
+    ) -> f64 {
         let own = self.left_over(push, torque);
         let left = other.map_or(own, |other| self.left_over(other, torque).min(own));
         let opened = self.window.take_in(push.frames, push.link, left);
@@ -83,9 +89,9 @@ impl Check {
         let surface = push.robot.links()[push.link].surface.as_ref();
         (self.explained, self.trusted) = match (&mut self.search, surface) {
             (Some(search), Some(surface)) => {
-                let Push { link, measurement, .. } = *push;
-                let task = Task { window: &self.window, link, surface, measurement };
-                judge(search, &task, told, torque.len(), self.stiffness)
+                let Push { link, force_model, .. } = *push;
+                let task = Task { window: &self.window, link, surface, force_model };
+                judge(search, &task, estimated, torque.len(), self.stiffness)
             }
             _ => {
                 let checks = self.window.len() * torque.len().saturating_sub(FITTED);
@@ -121,7 +127,7 @@ impl Check {
 fn judge(
     search: &mut Search,
     task: &Task<'_>,
-    told: &Told,
+    estimated: &EstimatedPush,
     joints: usize,
     [softest, stiffest]: [f64; 2],
 ) -> (bool, bool) {
@@ -143,11 +149,11 @@ fn judge(
     let trusted = |contacts: &Contacts| {
         poses >= enough
             && fits(contacts)
-            && told.agrees(contacts)
+            && estimated.agrees(contacts)
             && Slope::of(contacts, poses).is_some_and(confirmed)
     };
     let done = |contacts: &Contacts| contacts.misfit <= AMPLE * limit && trusted(contacts);
-    let contacts = search.improve(task, told, done);
+    let contacts = search.improve(task, estimated, done);
     let explained = fits(contacts) && !Slope::of(contacts, poses).is_some_and(too_soft);
     (explained, trusted(contacts))
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::measurement::Measurement;
+use super::force_model::ForceModel;
 use super::motion::signed;
 use super::push::BestForce;
 use super::window::{Sample, Window, POSES};
@@ -14,7 +14,7 @@ pub(super) struct Task<'a> {
     pub window: &'a Window,
     pub link: usize,
     pub surface: &'a Surface,
-    pub measurement: Measurement,
+    pub force_model: ForceModel,
 }
 
 /// Contacts of a link with an obstacle at the poses of a window.
@@ -71,7 +71,7 @@ impl Contact {
         let local = frame.pose.inverse_transform_point(centre);
         let near = task.surface.closest_point_near(&local, triangle);
         let (distance, normal) = signed(&near, &local);
-        let best = BestForce::of(frame, task.measurement, &near.point, &normal);
+        let best = BestForce::of(frame, task.force_model, &near.point, &normal);
         let joints = frame.joints();
         let (chain, left) = frame.left_over(&near.point, &best.force, &mut residual[..joints]);
         residual[joints..joints + 2].copy_from_slice(&best.across);

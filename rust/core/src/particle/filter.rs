@@ -8,7 +8,7 @@ use super::columns::Columns;
 use super::estimate::ContactEstimate;
 use super::options::FilterOptions;
 use super::parallel::Pool;
-use super::swarm::Swarm;
+use super::state::FilterState;
 use crate::error::Result;
 use crate::robot::Robot;
 
@@ -40,7 +40,7 @@ use crate::robot::Robot;
 /// ```
 #[derive(Debug)]
 pub struct ContactParticleFilter {
-    swarm: Swarm,
+    state: FilterState,
     pool: Pool,
 }
 
@@ -51,8 +51,8 @@ impl ContactParticleFilter {
     /// [`Error::Input`](crate::Error::Input) names the option.
     pub fn new(robot: Arc<Robot>, options: FilterOptions) -> Result<Self> {
         let threads = options.threads;
-        let swarm = Swarm::new(robot, options)?;
-        Ok(Self { swarm, pool: Pool::new(threads)? })
+        let state = FilterState::new(robot, options)?;
+        Ok(Self { state, pool: Pool::new(threads)? })
     }
 
     /// Takes in a configuration `q` `(nq,)` and the external torque `tau_ext` `(nv,)` measured there [Nm; N for sliding
@@ -64,46 +64,46 @@ impl ContactParticleFilter {
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) names the argument; the filter is unchanged.
     pub fn update(&mut self, q: &[f64], tau_ext: &[f64]) -> Result<&ContactEstimate> {
-        let Self { swarm, pool } = self;
-        swarm.read(q, tau_ext)?;
-        pool.install(|| swarm.step());
-        Ok(&swarm.estimate)
+        let Self { state, pool } = self;
+        state.read(q, tau_ext)?;
+        pool.install(|| state.step());
+        Ok(&state.estimate)
     }
 
     /// Forgets all updates.
     pub fn reset(&mut self) {
-        self.swarm.reset();
+        self.state.reset();
     }
 
     /// The last estimate.
     pub fn estimate(&self) -> &ContactEstimate {
-        &self.swarm.estimate
+        &self.state.estimate
     }
 
     /// The particles after the last update.
     pub fn particles(&self) -> &Columns {
-        &self.swarm.particles
+        &self.state.particles
     }
 
     /// Their weights, which sum to one.
     pub fn weights(&self) -> &[f64] {
-        &self.swarm.weights
+        &self.state.weights
     }
 
     /// Indices of the links that are looked on.
     pub fn links(&self) -> &[usize] {
-        &self.swarm.frames.wanted
+        &self.state.frames.wanted
     }
 
     /// Contact point of particle k, world frame [m].
     pub fn point(&self, k: usize) -> Vector3<f64> {
-        let Swarm { frames, particles, .. } = &self.swarm;
+        let FilterState { frames, particles, .. } = &self.state;
         frames.links[particles.link[k] as usize].pose.transform_point(&particles.point[k])
     }
 
     /// Outward normal of particle k, world frame.
     pub fn normal(&self, k: usize) -> Vector3<f64> {
-        let Swarm { frames, particles, .. } = &self.swarm;
+        let FilterState { frames, particles, .. } = &self.state;
         frames.links[particles.link[k] as usize].pose.rotation * particles.normal[k]
     }
 }

@@ -13,7 +13,7 @@ use crate::robot::Robot;
 const CELL: f64 = 0.015;
 /// Cells lighter than this share of the heaviest join no clusters.
 const LIGHT: f64 = 0.02;
-/// Modes that are told at most.
+/// Modes that are reported at most.
 pub(super) const MOST_MODES: usize = 8;
 const EMPTY: u32 = u32::MAX;
 /// Steps uphill to where a mode is densest.
@@ -143,14 +143,14 @@ impl Modes {
         self.connect();
         self.rank();
         self.found.clear();
-        let (mut spread, mut told) = (0.0, 0.0);
+        let (mut spread, mut reported) = (0.0, 0.0);
         for index in 0..self.roots.len().min(MOST_MODES) {
             let mode = self.describe(robot, frames, self.roots[index]);
             spread += mode.probability * mode.spread;
-            told += mode.probability;
+            reported += mode.probability;
             self.found.push(mode);
         }
-        self.spread = if told > 0.0 { spread / told } else { 0.0 };
+        self.spread = if reported > 0.0 { spread / reported } else { 0.0 };
     }
 
     /// Index of the cell with a key, made where there is none.
@@ -242,12 +242,12 @@ impl Modes {
         }
         let cells = &self.cells;
         let weight = |index: &u32| cells[*index as usize].cluster.weight;
-        let told = MOST_MODES.min(self.roots.len());
-        if told > 0 && told < self.roots.len() {
+        let reported = MOST_MODES.min(self.roots.len());
+        if reported > 0 && reported < self.roots.len() {
             self.roots
-                .select_nth_unstable_by(told - 1, |a, b| weight(b).total_cmp(&weight(a)).then(a.cmp(b)));
+                .select_nth_unstable_by(reported - 1, |a, b| weight(b).total_cmp(&weight(a)).then(a.cmp(b)));
         }
-        self.roots[..told].sort_unstable_by(|a, b| weight(b).total_cmp(&weight(a)).then(a.cmp(b)));
+        self.roots[..reported].sort_unstable_by(|a, b| weight(b).total_cmp(&weight(a)).then(a.cmp(b)));
     }
 
     fn describe(&self, robot: &Robot, frames: &Frames, root: u32) -> Mode {

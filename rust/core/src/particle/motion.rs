@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 
 use super::birth::Births;
 use super::columns::Slice;
+use super::force_model::ResponseModel;
 use super::frames::Frames;
-use super::measurement::Measuring;
 use super::options::Motion;
 use super::schedule::Noise;
 use crate::math::random::Stream;
@@ -24,7 +24,7 @@ pub(super) struct Move {
     pub motion: Motion,
     /// Logarithms of the least and the greatest radius.
     pub log_radius: [f64; 2],
-    pub measuring: Measuring,
+    pub response_model: ResponseModel,
     pub noise: Noise,
     /// Standard deviation of the force of particles that are not tied to an obstacle [N].
     pub loose_force: f64,
@@ -57,10 +57,10 @@ impl Move {
                 particles.fresh[k] = false;
                 // First without friction, whose limit is the force's.
                 particles.force[k] = 0.0;
-                let bare = self.measuring.apply(frames, particles, k);
+                let bare = self.response_model.apply(frames, particles, k);
                 (particles.force[k], particles.force_variance[k]) = births.force(bare.gain, bare.product);
             }
-            self.measuring.apply(frames, particles, k);
+            self.response_model.apply(frames, particles, k);
             if self.sampled {
                 self.draw(number, particles, k);
             }

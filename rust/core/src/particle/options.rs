@@ -1,8 +1,8 @@
-//! What a filter is told, and checks of it.
+//! Options of a filter, and checks of them.
 
 use std::ops::RangeInclusive;
 
-use super::measurement::Measurement;
+use super::force_model::ForceModel;
 use super::schedule::Schedule;
 use crate::error::{Error, Result};
 use crate::robot::{Robot, LARGEST, WORLD};
@@ -37,7 +37,7 @@ pub struct FilterOptions {
     /// How contacts move.
     pub motion: Motion,
     /// Which forces a contact can exert.
-    pub measurement: Measurement,
+    pub force_model: ForceModel,
     /// How errors of torque are weighed.
     pub likelihood: Likelihood,
     /// Names of the links to look on; all that move and have a surface by default.
@@ -67,7 +67,7 @@ impl Default for FilterOptions {
         FilterOptions {
             particles: 10_000,
             motion: Motion::default(),
-            measurement: Measurement::default(),
+            force_model: ForceModel::default(),
             likelihood: Likelihood::default(),
             links: None,
             seed: 0,
@@ -103,7 +103,7 @@ impl FilterOptions {
                 format!("must be zero or a positive number, got {}", self.relative_noise),
             ));
         }
-        self.measurement.check()?;
+        self.force_model.check()?;
         self.schedule.check()?;
         let moving = |&index: &usize| robot.links()[index].body != WORLD;
         let all: Vec<usize> = robot.touchable_links().iter().copied().filter(moving).collect();

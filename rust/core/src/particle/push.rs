@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
+use super::force_model::{across, ForceModel};
 use super::frames::{Frame, Frames};
-use super::measurement::{across, Measurement};
 use crate::robot::Robot;
 
 /// A force on a link, in its frame [N].
@@ -22,7 +22,7 @@ impl BestForce {
     /// At a point of a link, with its outward normal (both in the link's frame).
     pub fn of(
         frame: &Frame,
-        measurement: Measurement,
+        force_model: ForceModel,
         point: &Vector3<f64>,
         normal: &Vector3<f64>,
     ) -> BestForce {
@@ -30,8 +30,8 @@ impl BestForce {
         let size = if gain > 0.0 && product > 0.0 { product / gain } else { 0.0 };
         let variance = gain.recip();
         let bare = BestForce { force: -normal * size, normal: size, variance, across: [0.0; 2] };
-        match measurement {
-            Measurement::FrictionCone(friction) if size > 0.0 => {
+        match force_model {
+            ForceModel::FrictionCone(friction) if size > 0.0 => {
                 bare.with_friction(frame, friction, point, normal).unwrap_or(bare)
             }
             _ => bare,
@@ -69,7 +69,7 @@ impl BestForce {
 pub(super) struct Push<'a> {
     pub robot: &'a Robot,
     pub frames: &'a Frames,
-    pub measurement: Measurement,
+    pub force_model: ForceModel,
     pub link: usize,
     pub point: Vector3<f64>,
     pub normal: Vector3<f64>,
@@ -79,7 +79,7 @@ impl Push<'_> {
     /// Takes from the torques what the best force of this push does.
     pub fn subtract(&self, torque: &mut [f64]) {
         let frame = &self.frames.links[self.link];
-        let best = BestForce::of(frame, self.measurement, &self.point, &self.normal);
+        let best = BestForce::of(frame, self.force_model, &self.point, &self.normal);
         self.frames.subtract(self.robot, self.link, &self.point, &best.force, torque);
     }
 }

@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 
 use super::columns::Slice;
+use super::force_model::{across, ResponseModel};
 use super::frames::Frames;
-use super::measurement::{across, Measuring};
 use super::motion::{place, signed};
 use super::options::Motion;
 use crate::math::random::Stream;
@@ -17,7 +17,7 @@ const DRAWS: u64 = 4;
 #[derive(Debug, Clone)]
 pub(super) struct Rejuvenation {
     pub motion: Motion,
-    pub measuring: Measuring,
+    pub response_model: ResponseModel,
     /// Whether force and stiffness go along, so that the torque stays.
     pub keep_torque: bool,
     pub stiffness_range: [f64; 2],
@@ -54,7 +54,7 @@ impl Rejuvenation {
                 continue;
             }
             let (gain, product) = (particles.gain[k], particles.product[k]);
-            let here = self.measuring.apply(frames, particles, k);
+            let here = self.response_model.apply(frames, particles, k);
             let scale = (here.product * gain) / (here.gain * product);
             if scale > 0.0 && particles.force[k] * scale < self.most_force {
                 let [low, high] = self.stiffness_range;

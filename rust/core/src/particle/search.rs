@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::contacts::{Contacts, Task};
-use super::measurement::across;
+use super::force_model::across;
 use super::obstacle::{Obstacle, Residuals};
 use super::window::POSES;
 
@@ -14,25 +14,25 @@ const RIVAL_STEPS: usize = 3;
 const MOST_STEPS: usize = 12;
 /// Steps after which another start is given up: a fit that converges has done so.
 const PATIENCE: usize = 12;
-/// Starts: the best particle's obstacle, small and large ones at the told point, with radii of [m], and some so far beside
-/// it [m], since the told point may be one of several that fit about as well.
+/// Starts: the best particle's obstacle, small and large ones at the estimated point, with radii of [m], and some so far beside
+/// it [m], since the estimated point may be one of several that fit about as well.
 const RADII: [f64; 2] = [0.01, 0.05];
 const BESIDE: f64 = 0.03;
 const SIDES: usize = 4;
-/// A contact farther from the told one is another [m].
+/// A contact farther from the estimated one is another [m].
 const APART: f64 = 0.05;
 
-/// The told push: its point and outward normal, world frame, the point in its link's frame, and the centre of the best
+/// Where the estimated push is: its point and outward normal, world frame, the point in its link's frame, and the centre of the best
 /// particle's obstacle, if it is on the same link, world frame [m].
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Told {
+pub(super) struct EstimatedPush {
     pub point: Vector3<f64>,
     pub normal: Vector3<f64>,
     pub local: Vector3<f64>,
     pub centre: Option<Vector3<f64>>,
 }
 
-impl Told {
+impl EstimatedPush {
     /// Whether contacts agree with it at the newest pose.
     pub fn agrees(&self, contacts: &Contacts) -> bool {
         (contacts.point - self.local).norm() <= APART
@@ -67,7 +67,7 @@ struct Rival {
 /// Obstacles that are sought.
 #[derive(Debug, Clone)]
 pub(super) struct Search {
-    /// The best one found, one a link: the told link may change and come back.
+    /// The best one found, one a link: the estimated link may change and come back.
     found: Vec<Option<Obstacle>>,
     rival: Option<Rival>,
     /// Starts so far.
@@ -99,9 +99,14 @@ impl Search {
     }
 
     /// Searches on, from other starts too until that is done; returns the contacts that fit best.
-    pub fn improve(&mut self, task: &Task<'_>, told: &Told, done: impl Fn(&Contacts) -> bool) -> &Contacts {
+    pub fn improve(
+        &mut self,
+        task: &Task<'_>,
+        estimated: &EstimatedPush,
+        done: impl Fn(&Contacts) -> bool,
+    ) -> &Contacts {
         let more = POSES / task.window.len().max(1);
-        let found = self.found[task.link].get_or_insert_with(|| Obstacle::at(told.start(0)));
+        let found = self.found[task.link].get_or_insert_with(|| Obstacle::at(estimated.start(0)));
         for _ in 0..(STEPS * more).min(MOST_STEPS) {
             found.improve(task, &mut self.residuals);
         }
@@ -111,7 +116,7 @@ impl Search {
         let kept = self.rival.take().filter(|rival| rival.link == task.link && rival.steps < PATIENCE);
         let mut rival = kept.unwrap_or_else(|| {
             self.turn += 1;
-            Rival { link: task.link, obstacle: Obstacle::at(told.start(self.turn)), steps: 0 }
+            Rival { link: task.link, obstacle: Obstacle::at(estimated.start(self.turn)), steps: 0 }
         });
         for _ in 0..(RIVAL_STEPS * more).min(MOST_STEPS) {
             let settled = rival.obstacle.improve(task, &mut self.residuals);

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use super::columns::Columns;
 use super::options::FilterOptions;
 use super::schedule::Noise;
-use super::swarm::Swarm;
+use super::state::FilterState;
 use crate::error::Result;
 use crate::robot::Robot;
 
 /// A filter whose updates are done part by part.
 #[derive(Debug, Clone)]
-pub struct Stages(Swarm);
+pub struct Stages(FilterState);
 
 impl Stages {
     /// A filter after one whole update.
@@ -19,10 +19,10 @@ impl Stages {
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) names the option or argument.
     pub fn new(robot: Arc<Robot>, options: FilterOptions, q: &[f64], tau_ext: &[f64]) -> Result<Self> {
-        let mut swarm = Swarm::new(robot, options)?;
-        swarm.read(q, tau_ext)?;
-        swarm.step();
-        Ok(Stages(swarm))
+        let mut state = FilterState::new(robot, options)?;
+        state.read(q, tau_ext)?;
+        state.step();
+        Ok(Stages(state))
     }
 
     /// Moves all particles to a pose and computes what their forces do to the joints.
@@ -50,7 +50,7 @@ impl Stages {
 
     /// Finds the modes and says the estimate.
     pub fn estimate(&mut self) {
-        self.0.conclude(crate::particle::Event::Continued, 1.0, 0.0);
+        self.0.estimate_contact(crate::particle::Event::Continued, 1.0, 0.0);
     }
 
     /// The particles.

@@ -3,8 +3,8 @@ use std::f64::consts::FRAC_PI_2;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::*;
+use crate::particle::force_model::ForceModel;
 use crate::particle::frames::Frames;
-use crate::particle::measurement::Measurement;
 use crate::particle::spring::Slope;
 use crate::particle::window::Window;
 use crate::robot::{JointDescription, JointKind, LinkDescription, Robot, RobotDescription};
@@ -73,10 +73,10 @@ fn window(robot: &Robot, torque: impl Fn(&[f64], &Pose) -> Vec<f64>) -> Window {
 }
 
 /// A fit to the outermost link's window from a start in the world.
-fn fit(robot: &Robot, window: &Window, measurement: Measurement, start: Vector3<f64>) -> Obstacle {
+fn fit(robot: &Robot, window: &Window, force_model: ForceModel, start: Vector3<f64>) -> Obstacle {
     let link = robot.links().len() - 1;
     let surface = robot.links()[link].surface.as_ref().expect("a capsule");
-    let task = Task { window, link, surface, measurement };
+    let task = Task { window, link, surface, force_model };
     let mut obstacle = Obstacle::at(start);
     let mut residuals = Residuals::new(robot.nv());
     for _ in 0..STEPS {
@@ -112,7 +112,7 @@ fn a_ball_that_a_link_rolls_on_is_found_with_its_stiffness() {
     let robot = arm();
     let (centre, torque) = ball(&robot, 0.0);
     let window = window(&robot, torque);
-    let found = fit(&robot, &window, Measurement::Normal, centre + Vector3::new(0.02, -0.03, 0.01));
+    let found = fit(&robot, &window, ForceModel::Normal, centre + Vector3::new(0.02, -0.03, 0.01));
     assert!((found.centre - centre).norm() < 1e-4, "{}", found.centre - centre);
     assert!(found.contacts().misfit < 1e-3, "{}", found.contacts().misfit);
     let slope = Slope::of(found.contacts(), POSES).expect("many poses");
@@ -126,8 +126,8 @@ fn friction_in_the_cone_is_no_misfit() {
     let (centre, torque) = ball(&robot, 0.2);
     let window = window(&robot, torque);
     let start = centre + Vector3::new(0.01, -0.01, 0.01);
-    let bare = fit(&robot, &window, Measurement::Normal, start);
-    let cone = fit(&robot, &window, Measurement::FrictionCone(0.5), start);
+    let bare = fit(&robot, &window, ForceModel::Normal, start);
+    let cone = fit(&robot, &window, ForceModel::FrictionCone(0.5), start);
     // About one for the force across at each pose.
     assert!(cone.contacts().misfit < 2.0 * POSES as f64, "{}", cone.contacts().misfit);
     assert!(bare.contacts().misfit > 3.0 * cone.contacts().misfit, "{}", bare.contacts().misfit);
@@ -147,7 +147,7 @@ fn a_couple_is_no_obstacle() {
         (jacobian.rows(3, 3).transpose() * couple).as_slice().to_vec()
     });
     for radius in [-0.05, 0.0, 0.05] {
-        let found = fit(&robot, &window, Measurement::Normal, centre + Vector3::repeat(radius));
+        let found = fit(&robot, &window, ForceModel::Normal, centre + Vector3::repeat(radius));
         let checks = POSES * 5;
         assert!(found.contacts().misfit > 9.0 * 2.0 * checks as f64, "{}", found.contacts().misfit);
     }

@@ -8,10 +8,10 @@ use super::birth::{Births, PLACE};
 use super::check::Check;
 use super::columns::{Columns, Slice};
 use super::estimate::{ContactEstimate, Event};
+use super::force_model::ResponseModel;
 use super::frames::Frames;
 use super::left_over::{turning, LeftOver};
 use super::likelihood::{Belief, Weighing};
-use super::measurement::Measuring;
 use super::memory::{filled, space};
 use super::modes::{Modes, MOST_MODES};
 use super::motion::Move;
@@ -20,7 +20,7 @@ use super::parallel;
 use super::push::Push;
 use super::resampling::{effective_share, normalise};
 use super::schedule::Noise;
-use super::search::Told;
+use super::search::EstimatedPush;
 use crate::detection::Gate;
 use crate::error::Result;
 use crate::math::random::Stream;
@@ -43,7 +43,7 @@ const WIDENINGS: usize = 40;
 const PARTICLE: usize = 2 * Columns::SIZE + Modes::SIZE + PLACE + size_of::<f64>() + size_of::<u32>();
 
 #[derive(Debug, Clone)]
-pub(super) struct Swarm {
+pub(super) struct FilterState {
     robot: Arc<Robot>,
     pub options: FilterOptions,
     torque_noise: Vec<f64>,
@@ -70,12 +70,12 @@ pub(super) struct Swarm {
     /// Updates since the particles were last spread.
     pub age: u64,
     /// Age from which the particles may be weighed a second time within an update.
-    next_rescue: u64,
+    next_reinitialisation: u64,
     /// Streams of random numbers that were used up.
     streams: u64,
 }
 
-impl Swarm {
+impl FilterState {
     pub fn new(robot: Arc<Robot>, options: FilterOptions) -> Result<Self> {
         let wanted = options.check(&robot)?;
         let nv = robot.nv();
@@ -109,7 +109,7 @@ impl Swarm {
             adaptation: Adaptation::default(),
             step: 0,
             age: 0,
-            next_rescue: 1,
+            next_reinitialisation: 1,
             streams: 0,
             robot,
             options,
@@ -146,7 +146,7 @@ impl Swarm {
     /// Updates particles and estimate by the measurement that was read.
     pub fn step(&mut self) {
         let moved = if self.step == 0 { 0.0 } else { self.frames.displacement() };
-        let event = self.notice(moved);
+        let event = self.detect(moved);
         // What moves behind the contact tells nothing of it.
         let moved = self.estimate.link.map_or(moved, |link| self.frames.links[link].displacement());
         if self.step == 0 || matches!(event, Event::Started | Event::Jumped) {
@@ -168,23 +168,23 @@ impl Swarm {
         let noise = Noise::at(&self.options, self.age, moved);
         self.predict(&noise);
         let mut effective = self.weigh(moved, &noise);
-        let due = self.age >= self.next_rescue && noise.sharpness.is_none();
-        if due && self.left_over().is_much(RESCUE) {
-            self.next_rescue = self.age + PAUSE;
-            (effective, event) = self.rescue(&noise, moved, event);
+        let due = self.age >= self.next_reinitialisation && noise.sharpness.is_none();
+        if due && self.left_over().is_much(REINITIALISE) {
+            self.next_reinitialisation = self.age + PAUSE;
+            (effective, event) = self.reinitialise(&noise, moved, event);
         }
-        let left = self.conclude(event, effective, moved);
+        let left = self.estimate_contact(event, effective, moved);
         if effective < RESAMPLE * self.particles.len() as f64 {
             self.resample(&noise, moved, Adaptation::fresh_share(left.share));
         }
     }
 
     /// Says what the weighted particles show.
-    pub fn conclude(&mut self, event: Event, effective: f64, moved: f64) -> LeftOver {
+    pub fn estimate_contact(&mut self, event: Event, effective: f64, moved: f64) -> LeftOver {
         self.modes.find(&self.robot, &self.frames, &self.particles, &self.weights);
         let left = self.left_over();
         self.adaptation.learn(left.misfit, self.active_joints());
-        self.tell(event, effective, moved, &left);
+        self.update_estimate(event, effective, moved, &left);
         left
     }
 
@@ -194,8 +194,8 @@ impl Swarm {
         self.random.fork(self.streams)
     }
 
-    fn measuring(&self) -> Measuring {
-        Measuring { measurement: self.options.measurement, variance: self.adaptation.noise() }
+    fn response_model(&self) -> ResponseModel {
+        ResponseModel { force_model: self.options.force_model, variance: self.adaptation.noise() }
     }
 
     fn threads(&self) -> usize {
@@ -203,7 +203,7 @@ impl Swarm {
     }
 
     /// Whether a contact begins, goes on or ends.
-    fn notice(&mut self, moved: f64) -> Event {
+    fn detect(&mut self, moved: f64) -> Event {
         let felt = self.gate.update(&self.torque, 1.0);
         let before = std::mem::replace(&mut self.felt, felt);
         match (before, felt) {
@@ -223,13 +223,13 @@ impl Swarm {
         self.rejuvenate();
         self.adaptation = Adaptation::default();
         self.age = 0;
-        self.next_rescue = 1;
+        self.next_reinitialisation = 1;
     }
 
     pub fn predict(&mut self, noise: &Noise) {
         let motion = Move {
             motion: self.options.motion,
-            measuring: self.measuring(),
+            response_model: self.response_model(),
             log_radius: self.options.radius_range.map(f64::ln),
             noise: *noise,
             loose_force: self.options.force_range[1],
@@ -299,7 +299,7 @@ impl Swarm {
         LeftOver::of(&self.particles, &self.weights, self.frames.measured, self.torque.len())
     }
 
-    fn tell(&mut self, event: Event, effective: f64, moved: f64, left: &LeftOver) {
+    fn update_estimate(&mut self, event: Event, effective: f64, moved: f64, left: &LeftOver) {
         let error = left.moment(&self.torque, &self.noise, &self.turning) * self.adaptation.averaged();
         let Self { estimate, modes, frames, check, robot, particles, options, torque, .. } = self;
         let sure = (estimate.contact && !estimate.ambiguous)
@@ -322,7 +322,7 @@ impl Swarm {
         let push = Push {
             robot,
             frames,
-            measurement: options.measurement,
+            force_model: options.force_model,
             link,
             point: pose.inverse_transform_point(&estimate.point),
             normal: pose.inverse_transform_vector(&estimate.normal),
@@ -332,13 +332,13 @@ impl Swarm {
         let on_link = particles.link[left.best] as usize == link;
         let near = on_link && (best.0 - push.point).norm() < MOVED_ON;
         let other = near.then_some(Push { point: best.0, normal: best.1, ..push });
-        let told = Told {
+        let estimated = EstimatedPush {
             point: estimate.point,
             normal: estimate.normal,
             local: push.point,
             centre: on_link.then_some(particles.centre[left.best]),
         };
-        estimate.residual = check.take_in(&push, other.as_ref(), &told, torque);
+        estimate.residual = check.take_in(&push, other.as_ref(), &estimated, torque);
         estimate.explained = check.explained();
         // What is not explained is never sure, nor what has not been confirmed yet.
         estimate.ambiguous |= !check.trusted();
@@ -346,7 +346,7 @@ impl Swarm {
 }
 
 /// Above this share of the torque that the best particle leaves over, the contact is looked for on the whole surface.
-const RESCUE: f64 = 0.2;
+const REINITIALISE: f64 = 0.2;
 /// Updates from one such search to the next: it costs as much as an update.
 const PAUSE: u64 = 3;
 /// A point that was sure and is farther off now, beyond its spread and the robot's motion, is another contact [m].

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 
 /// Which forces a contact can exert.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Measurement {
+pub enum ForceModel {
     /// Along the inward normal only (Bimbo 2019, eq. 7).
     #[default]
     Normal,
@@ -17,14 +17,14 @@ pub enum Measurement {
     FrictionCone(f64),
 }
 
-impl Measurement {
+impl ForceModel {
     /// Whether the friction coefficient is one.
     ///
     /// # Errors
     /// [`Error::Input`] names it.
     pub fn check(&self) -> Result<()> {
         match self {
-            Measurement::FrictionCone(friction) if !(friction.is_finite() && *friction >= 0.0) => {
+            ForceModel::FrictionCone(friction) if !(friction.is_finite() && *friction >= 0.0) => {
                 Err(Error::input("friction", format!("must be zero or a positive number, got {friction}")))
             }
             _ => Ok(()),
@@ -50,13 +50,13 @@ pub(super) struct Response {
 
 /// What computing a response needs to know.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Measuring {
-    pub measurement: Measurement,
+pub(super) struct ResponseModel {
+    pub force_model: ForceModel,
     /// Variance of the torques' error, in units of their noise.
     pub variance: f64,
 }
 
-impl Measuring {
+impl ResponseModel {
     /// Sets what particle k's force does to the joints at the present pose.
     pub fn apply(&self, frames: &Frames, particles: &mut Slice<'_>, k: usize) -> Response {
         let response = self.response(
@@ -84,8 +84,8 @@ impl Measuring {
     ) -> Response {
         let frame = &frames.links[link as usize];
         let measured = frames.measured;
-        match self.measurement {
-            Measurement::FrictionCone(friction) if friction > LEAST_FRICTION && force > 0.0 => {
+        match self.force_model {
+            ForceModel::FrictionCone(friction) if friction > LEAST_FRICTION && force > 0.0 => {
                 let first = across(normal);
                 let directions = [-normal, first, normal.cross(&first)];
                 let (gram, products) = frame.responses(point, &directions);

@@ -1,6 +1,6 @@
 //! Drawing particles anew, by their weights and from the whole surface.
 
-use super::Swarm;
+use super::FilterState;
 use crate::particle::columns::Slice;
 use crate::particle::estimate::Event;
 use crate::particle::options::{Likelihood, Motion};
@@ -10,16 +10,16 @@ use crate::particle::resampling::systematic;
 use crate::particle::schedule::Noise;
 
 /// Share of the particles that look for a contact on the whole surface, where nothing explains the torque.
-const RESCUERS: f64 = 0.5;
+const REINITIALISED: f64 = 0.5;
 /// Share of the robot's motion that a contact held to be fixed moves.
 const SLIP: f64 = 0.5;
 
-impl Swarm {
+impl FilterState {
     /// Nothing explains the torque, as after a jump of the contact: looks for it on the whole surface at once, beside what
     /// was known. Returns how many particles are effective then, and what happened.
-    pub(super) fn rescue(&mut self, noise: &Noise, moved: f64, event: Event) -> (f64, Event) {
+    pub(super) fn reinitialise(&mut self, noise: &Noise, moved: f64, event: Event) -> (f64, Event) {
         let count = self.particles.len();
-        let kept = self.resample(noise, moved, RESCUERS);
+        let kept = self.resample(noise, moved, REINITIALISED);
         self.frames.stand();
         self.adaptation.begin();
         self.predict(&Noise::none());
@@ -60,7 +60,7 @@ impl Swarm {
     pub(super) fn rejuvenate(&mut self) {
         let apart = Rejuvenation {
             motion: self.options.motion,
-            measuring: self.measuring(),
+            response_model: self.response_model(),
             keep_torque: self.options.likelihood == Likelihood::Gaussian,
             stiffness_range: self.options.stiffness_range,
             most_force: self.options.force_range[1],
