@@ -5,7 +5,8 @@
 use std::sync::Arc;
 
 use contactsense::isolation::{ContactIsolator, IsolatorOptions};
-use contactsense::robot::{Robot, UrdfOptions};
+use contactsense::load::UrdfOptions;
+use contactsense::robot::Robot;
 use contactsense::{Error, Result};
 use nalgebra::DVector;
 

@@ -8,7 +8,7 @@
 mod detection;
 pub mod error;
 pub mod isolation;
-mod load;
+pub mod load;
 mod math;
 pub mod monitor;
 pub mod observer;

@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
+use contactsense::load::load_mesh;
 use contactsense::robot::{JointDescription, JointKind, LinkDescription, RobotDescription};
 use contactsense::spatial::Pose;
-use contactsense::surface::{load_mesh, Geometry, Part};
+use contactsense::surface::{Geometry, Part};
 use contactsense::Error;
 use nalgebra::{Matrix3, Vector3};
 use numpy::{PyArray2, PyArrayMethods};

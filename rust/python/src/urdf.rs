@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use contactsense::robot::{Robot, UrdfGeometry, UrdfOptions};
+use contactsense::load::{UrdfGeometry, UrdfOptions};
+use contactsense::robot::Robot;
 use nalgebra::Vector3;
 use pyo3::prelude::*;
 

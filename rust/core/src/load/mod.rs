@@ -1,10 +1,15 @@
 //! Files: robots from URDF, meshes.
 
 #[cfg(feature = "mesh-files")]
-pub(crate) mod mesh_file;
+mod mesh_file;
 #[cfg(feature = "mesh-files")]
 mod regular_file;
 #[cfg(feature = "urdf")]
-pub(crate) mod urdf;
+mod urdf;
 #[cfg(feature = "mesh-files")]
 mod xml_limits;
+
+#[cfg(feature = "mesh-files")]
+pub use mesh_file::{load_mesh, VerticesAndTriangles};
+#[cfg(feature = "urdf")]
+pub use urdf::{from_urdf, UrdfGeometry, UrdfOptions};

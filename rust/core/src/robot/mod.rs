@@ -12,8 +12,6 @@ mod link;
 #[allow(clippy::module_inception)] // the room is called after what is in it
 mod robot;
 
-#[cfg(feature = "urdf")]
-pub use crate::load::urdf::{from_urdf, UrdfGeometry, UrdfOptions};
 pub use configuration::LARGEST;
 pub use description::{JointDescription, JointKind, LinkDescription, RobotDescription};
 pub use dynamics::{ForwardDynamics, MomentumPass};

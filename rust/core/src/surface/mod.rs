@@ -13,8 +13,6 @@ mod sample;
 #[cfg(test)]
 mod tests;
 
-#[cfg(feature = "mesh-files")]
-pub use crate::load::mesh_file::{load_mesh, VerticesAndTriangles};
 pub use part::{Geometry, Part};
 
 use nalgebra::Vector3;

@@ -3,9 +3,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use contactsense::robot::{Robot, UrdfOptions};
+use contactsense::load::{load_mesh, UrdfOptions};
+use contactsense::robot::Robot;
 use contactsense::spatial::Pose;
-use contactsense::surface::{load_mesh, Geometry, Part, Surface};
+use contactsense::surface::{Geometry, Part, Surface};
 use contactsense::Error;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRng, TestRunner};

@@ -86,7 +86,7 @@ impl Default for UrdfOptions {
 ///
 /// # Example
 /// ```
-/// use contactsense::robot::{from_urdf, UrdfOptions};
+/// use contactsense::load::{from_urdf, UrdfOptions};
 ///
 /// let urdf = r#"
 ///     <robot name="pendulum">

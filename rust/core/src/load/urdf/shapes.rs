@@ -6,7 +6,8 @@ use super::build::pose;
 use super::meshes::MeshFinder;
 use super::UrdfGeometry;
 use crate::error::{Error, Result};
-use crate::surface::{load_mesh, Geometry, Part};
+use crate::load::load_mesh;
+use crate::surface::{Geometry, Part};
 
 /// Every shape of `link` in the given role; [`Error::Geometry`] names the link.
 pub(super) fn parts(link: &Link, role: UrdfGeometry, meshes: &MeshFinder) -> Result<Vec<Part>> {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::meshes::{block, icosphere, surface, Soup};
-use crate::surface::load_mesh;
+use crate::load::load_mesh;
 use crate::Error;
 
 /// A file that is removed in the end.

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use contactsense::robot::{Robot, UrdfOptions};
+use contactsense::load::UrdfOptions;
+use contactsense::robot::Robot;
 use serde::de::DeserializeOwned;
 use serde::Deserialize;
 
