@@ -296,7 +296,7 @@ impl PyContactIsolator {
         let shared = robot.get().0.clone();
         let isolator = ContactIsolator::new(shared.clone(), &options);
         let isolator = isolator.map_err(|error| to_python(robot.py(), error))?;
-        let sensors = isolator.sensors().names().into();
+        let sensors = isolator.sensor_names().into();
         Ok(Self { robot: shared, sensors, state: Mutex::new(State { isolator, wrenches: vec![] }) })
     }
 

@@ -261,9 +261,9 @@ impl ContactIsolator {
         self.isolation.clear();
     }
 
-    /// The sensors, those with a reading in use.
-    pub fn sensors(&self) -> &SensorTree {
-        &self.regions.tree
+    /// Names of the sensors, in their order.
+    pub fn sensor_names(&self) -> &[String] {
+        self.regions.tree.names()
     }
 
     /// The contacts that no sensor sees: one force if that explains the torques but for rounding; else several; one

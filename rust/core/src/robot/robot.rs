@@ -248,18 +248,18 @@ impl Robot {
     }
 
     /// Indices of the links with a surface that are fixed to a body.
-    pub fn links_of_body(&self, body: usize) -> &[usize] {
+    pub(crate) fn links_of_body(&self, body: usize) -> &[usize] {
         &self.body_links[body]
     }
 
     /// The bodies from the base to `body`, both included, the world not.
-    pub fn chain(&self, body: usize) -> &[usize] {
+    pub(crate) fn chain(&self, body: usize) -> &[usize] {
         &self.chains[body]
     }
 
     /// Whether the joint of body `joint` moves `body`: whether it is on the way from the base to there.
     #[inline]
-    pub fn moves(&self, joint: usize, body: usize) -> bool {
+    pub(crate) fn moves(&self, joint: usize, body: usize) -> bool {
         self.ancestry.moves(joint, body)
     }
 
@@ -269,12 +269,12 @@ impl Robot {
     }
 
     /// The body that carries a body; the world carries itself.
-    pub fn parent_body(&self, body: usize) -> usize {
+    pub(crate) fn parent_body(&self, body: usize) -> usize {
         self.bodies[body].parent
     }
 
     /// The velocity variables of the joint that moves a body.
-    pub fn velocity_range(&self, body: usize) -> std::ops::Range<usize> {
+    pub(crate) fn velocity_range(&self, body: usize) -> std::ops::Range<usize> {
         let body = &self.bodies[body];
         body.idx_v..body.idx_v + body.kind.nv()
     }

@@ -10,7 +10,7 @@ use crate::spatial::vector::{split, stack};
 /// Writes `J(S)^T F_ext,S`, `(nv,)`, for a wrench at the sensor's origin, world axes.
 ///
 /// Joints behind the sensor and on other branches get zero.
-pub fn sensor_torque(
+pub(crate) fn sensor_torque(
     robot: &Robot,
     kinematics: &Kinematics,
     tree: &SensorTree,

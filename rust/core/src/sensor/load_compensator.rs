@@ -70,7 +70,7 @@ impl LoadCompensator {
     /// A compensator for a robot's sensors; none is allowed.
     ///
     /// # Errors
-    /// As [`SensorTree::new`].
+    /// [`Error::Input`] names the sensor whose link, name or pose cannot be used.
     pub fn new(robot: Arc<Robot>, sensors: &[ForceTorqueSensor]) -> Result<Self> {
         let tree = SensorTree::new(&robot, sensors)?;
         let parts = distal_parts(&robot, &tree);
@@ -142,9 +142,9 @@ impl LoadCompensator {
         check_readings(&self.tree, wrenches)
     }
 
-    /// The sensors, all in use.
-    pub fn tree(&self) -> &SensorTree {
-        &self.tree
+    /// Names of the sensors, in their order.
+    pub fn sensor_names(&self) -> &[String] {
+        self.tree.names()
     }
 
     /// The last call's external wrenches; zeros before the first.

@@ -6,9 +6,10 @@ mod force_torque_sensor;
 mod load_compensator;
 mod sensor_tree;
 
-pub use exclusion::sensor_torque;
+pub(crate) use exclusion::sensor_torque;
 pub(crate) use force_torque_sensor::is_known;
 pub use force_torque_sensor::{Convention, ForceTorqueSensor};
 pub(crate) use load_compensator::check_readings;
 pub use load_compensator::LoadCompensator;
-pub use sensor_tree::{SensorTree, JOINT_TORQUES};
+pub(crate) use sensor_tree::SensorTree;
+pub use sensor_tree::JOINT_TORQUES;

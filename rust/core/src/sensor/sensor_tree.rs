@@ -12,7 +12,7 @@ pub const JOINT_TORQUES: &str = "joint torques";
 
 /// The sensors of one robot, in the order given, and the tree they form.
 #[derive(Debug, Clone)]
-pub struct SensorTree {
+pub(crate) struct SensorTree {
     sensors: Vec<ForceTorqueSensor>,
     names: Vec<String>,
     mounts: Vec<Mount>,
