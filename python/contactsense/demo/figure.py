@@ -9,7 +9,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from .figure_parts import TRUE_LINE, draw_bands, draw_force, draw_legend, rows_about, save_styled
+from .figure_parts import (
+    FORCE_LEGEND,
+    TRUE_LINE,
+    draw_bands,
+    draw_force,
+    draw_legend,
+    rows_about,
+    save_styled,
+)
 from .figure_robot import ROBOT_LEGEND, draw_robot
 from .plan import LINKS
 from .result import DemoResult, HitResult, Signals
@@ -38,7 +46,7 @@ def _draw(result: DemoResult) -> Figure:
         Line2D([], [], color=colour, lw=2.6, label=f"joint {number}")
         for number, colour in enumerate(JOINTS, 1)
     ]
-    draw_legend(figure, [*lines, Line2D([], [], label="true", **TRUE_LINE)], 0.632)
+    draw_legend(figure, [*lines, *FORCE_LEGEND], 0.632)
     rows: list[Axes] = []
     for column, link in enumerate(LINKS):
         hit = next(hit for hit in result.hits if hit.link == link)
@@ -85,7 +93,6 @@ def _finish(axes: list[Axes], *, first: bool) -> None:
     if first:
         axes[0].set_ylabel("external torque [Nm]")
         axes[1].set_ylabel("force [N]")
-        axes[1].legend(fontsize=9, frameon=False, loc="upper right", ncols=2, handlelength=1.6)
 
 
 def _whole_run(figure: Figure, axes: list[Axes], result: DemoResult) -> None:

@@ -13,6 +13,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from .._pictures import picture_file
@@ -21,6 +22,12 @@ from .result import HitResult, Signals
 from .style import DETECTED, ESTIMATE, GREY, TEXT, TRUTH
 
 TRUE_LINE: dict[str, Any] = {"color": TRUTH, "lw": 0.9, "ls": (0, (4, 2))}
+_FORCE_LINE: dict[str, Any] = {"color": ESTIMATE, "lw": 2.6}
+# Beside the robots' legend, so that it hides nothing in the panels.
+FORCE_LEGEND = (
+    Line2D([], [], label="true, over time", **TRUE_LINE),
+    Line2D([], [], label="estimated force, where located", **_FORCE_LINE),
+)
 
 
 def save_styled(draw: Callable[[], Figure], path: str | os.PathLike[str]) -> Path:
@@ -68,12 +75,12 @@ def draw_force(axes: Axes, signals: Signals, hit: HitResult, window: tuple[float
     """Magnitude of the force about one hit, true and estimated."""
     time, rows = rows_about(signals, hit, window)
     axes.fill_between(time, signals.true_force[rows], color=TRUTH, alpha=0.12, lw=0)
-    axes.plot(time, signals.true_force[rows], label="true", **TRUE_LINE)
+    axes.plot(time, signals.true_force[rows], **TRUE_LINE)
     axes.set_ylim(-4.0, 110.0)
-    axes.plot(time, signals.force[rows], color=ESTIMATE, lw=2.6, label="estimated, where located")
+    axes.plot(time, signals.force[rows], **_FORCE_LINE)
     if not hit.located:
-        note = "not felt" if hit.delay is None else "point open, and so\nis the force"
-        axes.text(0.97, 0.9, note, ha="right", va="top", transform=axes.transAxes, color=TEXT)
+        note = "not felt" if hit.delay is None else "point and force\nnot determined"
+        axes.text(0.97, 0.84, note, ha="right", va="top", transform=axes.transAxes, color=TEXT)
 
 
 def draw_bands(axes: Axes, time: NDArray[np.float64], signals: Signals) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..figure_parts import draw_bands, draw_force, draw_legend, save_styled
+from ..figure_parts import FORCE_LEGEND, draw_bands, draw_force, draw_legend, save_styled
 from ..figure_robot import ROBOT_LEGEND, draw_robot
 from ..result import DemoResult, HitResult, Standing
 from ..style import ESTIMATE, GREY, JOINTS, TEXT, TRUTH
@@ -43,7 +43,7 @@ def _draw(result: DemoResult) -> Figure:
     sides = {"left": _LEFT, "right": _RIGHT, "wspace": 0.08, "hspace": 0.14}
     close = figure.add_gridspec(2, count, height_ratios=(2.6, 0.5), top=0.53, bottom=0.345, **sides)
     whole = figure.add_gridspec(3, 1, height_ratios=(2.2, 2.0, 0.5), top=0.285, bottom=0.05, **sides)
-    draw_legend(figure, ROBOT_LEGEND, 0.553)
+    draw_legend(figure, [*ROBOT_LEGEND, *FORCE_LEGEND], 0.553)
     first: list[Axes] = []
     for column, hit in enumerate(result.hits):
         axes = [
@@ -93,7 +93,6 @@ def _finish(axes: list[Axes], hit: HitResult, *, leftmost: bool) -> None:
     axes[-1].set_xlabel("time since the push began [ms]")
     if leftmost:
         axes[0].set_ylabel("force [N]")
-        axes[0].legend(fontsize=9, frameon=False, loc="upper left", handlelength=1.6)
 
 
 def _whole_run(axes: list[Axes], result: DemoResult, standing: Standing) -> None:
