@@ -110,7 +110,11 @@ SLOW = """
     robot = cs.Robot.named("iiwa14")
     surface = robot.surface(robot.link_names[-1])
     rows = np.random.default_rng(0).normal(size=(1_500_000, 3))
+    if "{name}" == "update":
+        tracker = cs.ContactParticleFilter(robot, particles=1_000_000)
+        q, torque = np.full(7, 0.4), np.array([1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])
     calls = {{
+        "update": lambda: tracker.update(q, torque),
         "sample": lambda: surface.sample(30_000_000),
         "closest_points": lambda: surface.closest_points(rows),
         "cast_rays": lambda: surface.cast_rays(rows, rows),
@@ -131,6 +135,8 @@ SLOW = """
         calls["{name}"]()
     except KeyboardInterrupt:
         print("interrupted")
+    if "{name}" == "update":
+        assert tracker.update(q, torque).event == "started", "what was stopped is forgotten"
 """
 
 
@@ -145,10 +151,11 @@ def run(script, **options):
 
 
 @pytest.mark.skipif(not hasattr(signal, "pthread_kill"), reason="signals of POSIX")
-@pytest.mark.parametrize("name", ["sample", "closest_points", "cast_rays"])
+@pytest.mark.parametrize("name", ["sample", "closest_points", "cast_rays", "update"])
 def test_a_long_call_is_interrupted_between_slices(name):
     """A handler of signals runs in the midst of the call; without slices it would run at its end."""
     ended = run(SLOW.format(name=name))
+    assert not ended.returncode, ended.stderr
     share, interrupted = ended.stdout.split()
     assert float(share) < 0.9, ended.stderr
     assert interrupted == "interrupted"

@@ -35,6 +35,9 @@ pub enum Error {
     /// There is not enough memory for what was asked for.
     #[error("{0}")]
     Memory(String),
+    /// A call was stopped from another thread.
+    #[error("the call was stopped")]
+    Stopped,
 }
 
 impl Error {

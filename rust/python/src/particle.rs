@@ -1,9 +1,12 @@
 //! `ContactParticleFilter` and its `Particles`.
 
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::{channel, RecvTimeoutError};
 use std::sync::{Arc, Mutex, MutexGuard};
+use std::time::Duration;
 
 use contactsense::particle::{
-    ContactParticleFilter, FilterOptions, ForceModel, Likelihood, Motion, Schedule,
+    ContactEstimate, ContactParticleFilter, FilterOptions, ForceModel, Likelihood, Motion, Schedule,
 };
 use contactsense::robot::Robot;
 use numpy::{PyArray1, PyArray2};
@@ -161,7 +164,8 @@ impl PyContactParticleFilter {
     ///
     /// `tau_ext` is what `MomentumObserver` gives, or `g(q) - tau` where the robot holds still. The first call that feels a
     /// contact spreads the particles over the surface. `time` [s] is handed on to the estimate. Other Python threads run
-    /// meanwhile. Raises `InputError` that names the argument; the filter is then unchanged.
+    /// meanwhile. With many particles Ctrl-C stops the call, and the filter has then forgotten all updates. Raises
+    /// `InputError` that names the argument; the filter is then unchanged.
     #[pyo3(signature = (q, tau_ext, *, time=None))]
     fn update(
         &self,
@@ -177,7 +181,11 @@ impl PyContactParticleFilter {
         }
         let mut sole = self.sole(py)?;
         let filter = &mut *sole;
-        let estimate = py.detach(|| filter.update(&q, &tau_ext).cloned());
+        let estimate = if filter.particles().len() < LONG {
+            py.detach(|| filter.update(&q, &tau_ext).cloned())
+        } else {
+            update_with_signals(py, filter, &q, &tau_ext)?
+        };
         let estimate = estimate.map_err(|error| to_python(py, error))?;
         let time = time.map_or(estimate.updates as f64, |time| time.0);
         Ok(PyContactEstimate { links: sole.links().into(), robot: self.robot.clone(), estimate, time })
@@ -207,6 +215,46 @@ impl PyContactParticleFilter {
             stiffness: PyArray1::from_slice(py, &columns.stiffness).unbind(),
             weight: PyArray1::from_slice(py, filter.weights()).unbind(),
         })
+    }
+}
+
+/// From so many particles on an update may take a tenth of a second and more, and Ctrl-C is looked for meanwhile.
+const LONG: usize = 200_000;
+/// Time from one look to the next.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// An update on another thread, while this one looks for signals; what a signal's handler raises stops it.
+fn update_with_signals(
+    py: Python<'_>,
+    filter: &mut ContactParticleFilter,
+    q: &[f64],
+    tau_ext: &[f64],
+) -> PyResult<contactsense::Result<ContactEstimate>> {
+    let stop = filter.stop();
+    let (updated, raised) = py.detach(|| {
+        let (done, waiting) = channel();
+        std::thread::scope(|scope| {
+            let work = scope.spawn(move || {
+                let updated = filter.update(q, tau_ext).cloned();
+                // Nobody waits any more only where this thread's parent has panicked.
+                let _ = done.send(());
+                updated
+            });
+            let mut raised = None;
+            while matches!(waiting.recv_timeout(LOOK), Err(RecvTimeoutError::Timeout)) {
+                if let Err(error) = Python::attach(|py| py.check_signals()) {
+                    stop.store(true, Ordering::Relaxed);
+                    raised.get_or_insert(error);
+                }
+            }
+            (work.join(), raised)
+        })
+    });
+    // The update may have ended just before it was to be stopped.
+    stop.store(false, Ordering::Relaxed);
+    match raised {
+        Some(error) => Err(error),
+        None => Ok(updated.unwrap_or_else(|panic| std::panic::resume_unwind(panic))),
     }
 }
 

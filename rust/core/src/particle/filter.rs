@@ -1,5 +1,6 @@
 //! The filter as users see it.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
 
 use nalgebra::Vector3;
@@ -9,7 +10,7 @@ use super::estimate::ContactEstimate;
 use super::options::FilterOptions;
 use super::parallel::Pool;
 use super::state::FilterState;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::robot::Robot;
 
 /// Finds one contact anywhere on a robot from joint torques, by particles on its surface (Bimbo 2019).
@@ -67,7 +68,18 @@ impl ContactParticleFilter {
         let Self { state, pool } = self;
         state.read(q, tau_ext)?;
         pool.install(|| state.step());
+        if state.stop.swap(false, Ordering::Relaxed) {
+            // What was done in part is of no use.
+            state.reset();
+            return Err(Error::Stopped);
+        }
         Ok(&state.estimate)
+    }
+
+    /// A flag that stops an update when another thread sets it. The update then ends within some seconds, even with ten
+    /// million particles, with [`Error::Stopped`], and the filter has forgotten all updates.
+    pub fn stop(&self) -> Arc<AtomicBool> {
+        self.state.stop.clone()
     }
 
     /// Forgets all updates.

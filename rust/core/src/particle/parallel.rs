@@ -1,5 +1,7 @@
 //! A step on several threads.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::columns::Slice;
 #[cfg(feature = "parallel")]
 use crate::error::Error;
@@ -7,22 +9,40 @@ use crate::error::Result;
 
 /// Fewer particles are not worth sharing.
 const GRAIN: usize = 512;
+/// As many take some 10 ms: after so many it is seen whether to stop.
+const MOST_AT_ONCE: usize = 65_536;
 
-/// Calls `work` on pieces of the particles with the number of their first one, on the threads of the pool that this is
-/// called from, or at once on all.
-pub(super) fn for_each(
-    particles: Slice<'_>,
-    start: usize,
-    threads: usize,
-    work: &(impl Fn(usize, Slice<'_>) + Sync),
-) {
-    let count = particles.len();
-    if threads < 2 || count <= GRAIN {
-        return work(start, particles);
+/// How the particles are worked on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Course<'a> {
+    /// One, or as many as the pool has that this is called from.
+    pub threads: usize,
+    /// Nothing more is done once it is set.
+    pub stop: &'a AtomicBool,
+}
+
+impl Course<'_> {
+    /// Calls `work` on pieces of the particles with the number of their first one.
+    pub fn for_each(self, particles: Slice<'_>, start: usize, work: &(impl Fn(usize, Slice<'_>) + Sync)) {
+        let count = particles.len();
+        let most = if self.threads < 2 { MOST_AT_ONCE } else { GRAIN };
+        if self.stop.load(Ordering::Relaxed) {
+            return;
+        }
+        if count <= most {
+            return work(start, particles);
+        }
+        let middle = count / 2;
+        let (left, right) = particles.split_at(middle);
+        let first = || self.for_each(left, start, work);
+        let second = || self.for_each(right, start + middle, work);
+        if self.threads < 2 {
+            first();
+            second();
+        } else {
+            join(first, second);
+        }
     }
-    let middle = count / 2;
-    let (left, right) = particles.split_at(middle);
-    join(|| for_each(left, start, threads, work), || for_each(right, start + middle, threads, work));
 }
 
 #[cfg(feature = "parallel")]

@@ -1,6 +1,7 @@
 //! All that an update works on, and its course.
 
 use std::mem::size_of;
+use std::sync::atomic::AtomicBool;
 use std::sync::Arc;
 
 use super::adaptation::Adaptation;
@@ -16,7 +17,7 @@ use super::memory::{filled, space};
 use super::modes::{Modes, MOST_MODES};
 use super::motion::Move;
 use super::options::{FilterOptions, Likelihood, Motion};
-use super::parallel;
+use super::parallel::Course;
 use super::push::Push;
 use super::resampling::{effective_share, normalise};
 use super::schedule::Noise;
@@ -46,6 +47,8 @@ const PARTICLE: usize = 2 * Columns::SIZE + Modes::SIZE + PLACE + size_of::<f64>
 pub(super) struct FilterState {
     robot: Arc<Robot>,
     pub options: FilterOptions,
+    /// Set to stop a step from another thread.
+    pub stop: Arc<AtomicBool>,
     torque_noise: Vec<f64>,
     gate: Gate,
     /// The measurement: torques, and their noise.
@@ -108,6 +111,7 @@ impl FilterState {
             random: Stream::new(options.seed),
             adaptation: Adaptation::default(),
             step: 0,
+            stop: Arc::default(),
             age: 0,
             next_reinitialisation: 1,
             streams: 0,
@@ -198,10 +202,6 @@ impl FilterState {
         ResponseModel { force_model: self.options.force_model, variance: self.adaptation.noise() }
     }
 
-    fn threads(&self) -> usize {
-        self.options.threads
-    }
-
     /// Whether a contact begins, goes on or ends.
     fn detect(&mut self, moved: f64) -> Event {
         let felt = self.gate.update(&self.torque, 1.0);
@@ -238,11 +238,10 @@ impl FilterState {
             random: self.stream(),
             step: self.step,
         };
-        let threads = self.threads();
-        let Self { robot, frames, births, particles, .. } = self;
+        let Self { robot, frames, births, particles, options, stop, .. } = self;
         let work =
             |start: usize, mut slice: Slice<'_>| motion.apply(robot, frames, births, start, &mut slice);
-        parallel::for_each(particles.slice(), 0, threads, &work);
+        Course { threads: options.threads, stop }.for_each(particles.slice(), 0, &work);
     }
 
     /// Weighs the particles; returns how many are effective.
@@ -270,9 +269,9 @@ impl FilterState {
             }
             self.adaptation.weighed(weighing.variance);
         }
-        let threads = self.threads();
         let work = |_: usize, mut slice: Slice<'_>| weighing.apply(&mut slice);
-        parallel::for_each(self.particles.slice(), 0, threads, &work);
+        let course = Course { threads: self.options.threads, stop: &self.stop };
+        course.for_each(self.particles.slice(), 0, &work);
         normalise(&mut self.particles.log_weight, &mut self.weights)
     }
 

@@ -4,7 +4,7 @@ use super::FilterState;
 use crate::particle::columns::Slice;
 use crate::particle::estimate::Event;
 use crate::particle::options::{Likelihood, Motion};
-use crate::particle::parallel;
+use crate::particle::parallel::Course;
 use crate::particle::rejuvenation::Rejuvenation;
 use crate::particle::resampling::systematic;
 use crate::particle::schedule::Noise;
@@ -66,9 +66,8 @@ impl FilterState {
             most_force: self.options.force_range[1],
             random: self.stream(),
         };
-        let threads = self.threads();
-        let Self { robot, frames, particles, .. } = self;
+        let Self { robot, frames, particles, options, stop, .. } = self;
         let work = |start: usize, mut slice: Slice<'_>| apart.apply(robot, frames, start, &mut slice);
-        parallel::for_each(particles.slice(), 0, threads, &work);
+        Course { threads: options.threads, stop }.for_each(particles.slice(), 0, &work);
     }
 }
