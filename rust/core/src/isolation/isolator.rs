@@ -7,6 +7,7 @@ use nalgebra::Vector6;
 use super::body_set::BodySet;
 use super::found::Scene;
 use super::line::LineCast;
+use super::options::IsolatorOptions;
 use super::region::{Region, Regions};
 use super::result::{Candidate, Isolation};
 use super::rows::{Root, TorqueRows, WrenchRows};
@@ -17,7 +18,7 @@ use crate::detection::{check_threshold, check_wrench_threshold, is_over};
 use crate::error::{Error, Result};
 use crate::observer::WrenchObserver;
 use crate::robot::{Kinematics, Robot};
-use crate::sensor::{ForceTorqueSensor, SensorTree};
+use crate::sensor::SensorTree;
 
 /// All hits of one instant that are kept.
 const CANDIDATES: usize = 512;
@@ -30,44 +31,9 @@ pub(super) const SIGNIFICANCE: f64 = 3.0;
 /// Radius that holds 90 % of a normal distribution, in standard deviations of the distance: at most this, which is for a
 /// distribution along a line (for a circular one it is 1.52).
 const RADIUS_90: f64 = 1.645;
-/// Default of [`IsolatorOptions::locate_within`]: about the width of a hand's contact [m].
-const LOCATE_WITHIN: f64 = 0.05;
 /// A torque or wrench that is a difference of measured ones is none if it is less than this share of them: five
 /// standard deviations of sensors that err by a hundredth.
 pub(super) const LEFT_OVER: f64 = 0.05;
-
-/// Settings of a [`ContactIsolator`].
-#[derive(Debug, Clone)]
-pub struct IsolatorOptions {
-    /// Per velocity variable, or one for all [Nm, N]. Also the scale of the torques' errors.
-    pub torque_threshold: Vec<f64>,
-    /// Contacts reported at most.
-    pub max_contacts: usize,
-    /// Whether forces push on the surface (they may pull otherwise, and the point stays open).
-    pub pushing: bool,
-    /// Force/torque sensors, in the order of the wrenches.
-    pub sensors: Vec<ForceTorqueSensor>,
-    /// On the sensors' wrenches: one number, 6 for every sensor, or 6 times the number of sensors [N, Nm].
-    pub wrench_threshold: Vec<f64>,
-    /// Names of the sensors whose contacts are meant and not reported (eq. 20).
-    pub wanted_contacts: Vec<String>,
-    /// A contact is located if 90 % of the places that explain the torques are within this distance of its point [m].
-    pub locate_within: f64,
-}
-
-impl Default for IsolatorOptions {
-    fn default() -> Self {
-        Self {
-            torque_threshold: vec![1e-3],
-            max_contacts: 5,
-            pushing: true,
-            sensors: vec![],
-            wrench_threshold: vec![1e-3],
-            wanted_contacts: vec![],
-            locate_within: LOCATE_WITHIN,
-        }
-    }
-}
 
 /// Finds the contact that explains an external torque.
 ///
@@ -134,15 +100,7 @@ impl ContactIsolator {
     /// [`Error::Input`] names the option.
     pub fn new(robot: Arc<Robot>, options: &IsolatorOptions) -> Result<Self> {
         let threshold = check_threshold(&robot, &options.torque_threshold)?;
-        if options.max_contacts == 0 {
-            return Err(Error::input("max_contacts", "must be at least 1"));
-        }
-        if !(options.locate_within > 0.0 && options.locate_within.is_finite()) {
-            return Err(Error::input(
-                "locate_within",
-                format!("must be positive and finite [m], not {}", options.locate_within),
-            ));
-        }
+        options.check()?;
         let tree = SensorTree::new(&robot, &options.sensors)?;
         let wrench_threshold = check_wrench_threshold(&tree, &options.wrench_threshold)?;
         let wanted = tree.wanted(&options.wanted_contacts)?;

@@ -9,6 +9,7 @@ mod isolator;
 mod line;
 mod one_more;
 mod open_part;
+mod options;
 mod pair;
 mod region;
 mod report;
@@ -25,5 +26,6 @@ mod together;
 mod work;
 mod wrench;
 
-pub use isolator::{ContactIsolator, IsolatorOptions};
+pub use isolator::ContactIsolator;
+pub use options::IsolatorOptions;
 pub use result::{Candidate, Contact, Isolation};
