@@ -46,6 +46,11 @@ impl Gate {
         self.on
     }
 
+    /// Whether any signal is on.
+    pub fn any_on(&self) -> bool {
+        self.on
+    }
+
     /// Whether a signal is on.
     pub fn is_on(&self, signal: usize) -> bool {
         self.remaining[signal] >= 0.0

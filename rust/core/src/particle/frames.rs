@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::robot::joint_axis::motion_axis;
+use crate::robot::jacobian::for_each_column;
 use crate::robot::{Kinematics, Robot, WORLD};
 use crate::spatial::vector::split;
 use crate::spatial::Pose;
@@ -153,18 +153,14 @@ impl Frames {
             // From the reference origin of the kinematics to the link's.
             let arm = frame.pose.translation - self.kinematics.origin;
             let mut screws = frame.screws.iter_mut();
-            for &body in robot.chain(robot.links()[index].body) {
-                let state = &self.kinematics.bodies[body];
-                for (column, k) in robot.velocity_range(body).enumerate() {
-                    let (linear, angular) = split(&motion_axis(robot.bodies[body].kind, state, column));
-                    let linear = linear + angular.cross(&arm);
-                    if let Some(screw) = screws.next() {
-                        screw.linear = frame.pose.inverse_transform_vector(&(linear / noise[k]));
-                        screw.angular = frame.pose.inverse_transform_vector(&(angular / noise[k]));
-                        screw.torque = torque[k] / noise[k];
-                    }
+            for_each_column(robot, &self.kinematics, robot.links()[index].body, &arm, |k, column| {
+                let (linear, angular) = split(&column);
+                if let Some(screw) = screws.next() {
+                    screw.linear = frame.pose.inverse_transform_vector(&(linear / noise[k]));
+                    screw.angular = frame.pose.inverse_transform_vector(&(angular / noise[k]));
+                    screw.torque = torque[k] / noise[k];
                 }
-            }
+            });
         }
     }
 
@@ -181,13 +177,10 @@ impl Frames {
         let force = pose.rotation * force;
         // About the reference origin of the kinematics.
         let moment = (pose.transform_point(point) - self.kinematics.origin).cross(&force);
-        for &body in robot.chain(robot.links()[link].body) {
-            let state = &self.kinematics.bodies[body];
-            for (column, k) in robot.velocity_range(body).enumerate() {
-                let (linear, angular) = split(&motion_axis(robot.bodies[body].kind, state, column));
-                torque[k] -= linear.dot(&force) + angular.dot(&moment);
-            }
-        }
+        for_each_column(robot, &self.kinematics, robot.links()[link].body, &Vector3::zeros(), |k, column| {
+            let (linear, angular) = split(&column);
+            torque[k] -= linear.dot(&force) + angular.dot(&moment);
+        });
     }
 
     /// Forgets the step before: no link has moved.

@@ -56,7 +56,6 @@ pub(super) struct FilterState {
     noise: Vec<f64>,
     /// Whether a velocity variable is a rotation's.
     turning: Vec<bool>,
-    felt: bool,
     pub frames: Frames,
     births: Births,
     pub particles: Columns,
@@ -99,7 +98,6 @@ impl FilterState {
             torque: vec![0.0; nv],
             noise: vec![1.0; nv],
             turning: turning(&robot),
-            felt: false,
             births,
             estimate: ContactEstimate::new(links, MOST_MODES),
             frames,
@@ -123,7 +121,6 @@ impl FilterState {
     pub fn reset(&mut self) {
         self.step = 0;
         self.streams = 0;
-        self.felt = false;
         self.gate.reset();
         self.estimate.clear();
         self.estimate.event = Event::None;
@@ -156,7 +153,7 @@ impl FilterState {
         if self.step == 0 || matches!(event, Event::Started | Event::Jumped) {
             self.spread();
         }
-        if self.felt {
+        if self.gate.any_on() {
             self.follow(event, moved);
         } else {
             self.estimate.clear();
@@ -204,8 +201,8 @@ impl FilterState {
 
     /// Whether a contact begins, goes on or ends.
     fn detect(&mut self, moved: f64) -> Event {
+        let before = self.gate.any_on();
         let felt = self.gate.update(&self.torque, 1.0);
-        let before = std::mem::replace(&mut self.felt, felt);
         match (before, felt) {
             (false, false) => Event::None,
             (false, true) => Event::Started,
