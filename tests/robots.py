@@ -87,7 +87,8 @@ ATLAS = [
     RobotFile("atlas_hull", SHARED / "robots/atlas/atlas_v5_convex_hull.urdf", floating_base=True),
 ]
 IIWA14 = RobotFile("iiwa14_mesh", SHARED / "robots/iiwa14/iiwa14.urdf")
-BY_NAME = {file.name: file for file in [*EXAMPLES, *ATLAS, IIWA14]}
+TALOS_ARM = _example("talos_left_arm", "talos_data/robots/talos_left_arm.urdf")
+BY_NAME = {file.name: file for file in [*EXAMPLES, *ATLAS, IIWA14, TALOS_ARM]}
 
 
 def parameters(robots: Iterable[RobotFile | str]) -> list:

@@ -90,6 +90,20 @@ def test_what_is_no_single_push_is_not_sure(which: str) -> None:
     assert not pushes[-1].ambiguous
 
 
+def test_a_payload_whose_force_follows_the_motion_is_not_sure() -> None:
+    # A weight in the gripper of the Talos arm fits a point of link 5 whose force follows a spring of 360 N/m.
+    robot, model = example_arm("talos_left_arm")
+    run = scene_run(robot, model, "gripper_left_inner_single_link", 21)
+    payload, last = [], run_links(robot)[-1]
+    for q in run.q:
+        pose = robot.link_pose(q, last)
+        place = pose[:3, :3] @ [-0.00326, -0.00261, 0.09795] + pose[:3, 3]
+        payload.append(robot.jacobian(q, last, place)[:3].T @ [0.0, 0.0, -8.2728])
+    tracker = cs.ContactParticleFilter(robot, particles=4000)
+    estimates = [tracker.update(q, torque) for q, torque in zip(run.q, payload, strict=True)]
+    assert all(estimate.contact and estimate.ambiguous for estimate in estimates)
+
+
 def test_a_push_is_sure_once_motion_has_confirmed_it() -> None:
     run = explored(6, 42)
     tracker = cs.ContactParticleFilter(arm()[0], particles=3000)

@@ -1,17 +1,20 @@
 //! Whether a single push on an obstacle that stays explains what was measured at the last poses.
 
+use nalgebra::Vector3;
+
 use super::contacts::{Contacts, Task};
 use super::frames::Frames;
 use super::options::{FilterOptions, Likelihood, Motion};
 use super::push::Push;
 use super::search::{EstimatedPush, Search};
 use super::spring::Slope;
+use super::weight;
 use super::window::Window;
 use crate::math::chi_square::upper_limit;
 use crate::robot::Robot;
 
 /// Errors of torque may be so many times as large as is stated [1].
-const GRANTED: f64 = 3.0;
+const GRANTED: f64 = 4.0;
 /// Parameters of a push at one pose: its force and two coordinates on the surface; of an obstacle: its centre.
 const FITTED: usize = 3;
 const CENTRE: usize = 3;
@@ -42,6 +45,8 @@ pub(super) struct Check {
     search: Option<Search>,
     /// Least and greatest stiffness of an obstacle [N/m].
     stiffness: [f64; 2],
+    /// Direction of gravity, world frame; none without gravity.
+    down: Option<Vector3<f64>>,
     explained: bool,
     trusted: bool,
 }
@@ -57,6 +62,7 @@ impl Check {
             window: Window::new(frames),
             search: springy.then(|| Search::new(robot.links().len(), robot.nv())),
             stiffness: options.stiffness_range,
+            down: robot.gravity.try_normalize(0.0),
             explained: true,
             trusted: false,
         }
@@ -90,8 +96,13 @@ impl Check {
         (self.explained, self.trusted) = match (&mut self.search, surface) {
             (Some(search), Some(surface)) => {
                 let Push { link, force_model, .. } = *push;
-                let task = Task { window: &self.window, link, surface, force_model };
-                judge(search, &task, estimated, torque.len(), self.stiffness)
+                let joints = torque.len();
+                let task = Task { window: &self.window, link, surface, force_model, joints };
+                let (explained, trusted) = judge(search, &task, estimated, self.stiffness);
+                let down = self.down.filter(|_| trusted);
+                let as_well =
+                    |down| weight::explains_as_well(&task, &push.frames.wanted, &down, search.contacts(link));
+                (explained, trusted && !down.is_some_and(as_well))
             }
             _ => {
                 let checks = self.window.len() * torque.len().saturating_sub(FITTED);
@@ -128,14 +139,13 @@ fn judge(
     search: &mut Search,
     task: &Task<'_>,
     estimated: &EstimatedPush,
-    joints: usize,
     [softest, stiffest]: [f64; 2],
 ) -> (bool, bool) {
     let poses = task.window.len();
     let chain = task.window.chain(task.link);
     // Each pose has a force of its own. The other joints are tested apart, lest many of them at rest hide a misfit.
     let limit = tolerance((poses * chain.saturating_sub(1)).saturating_sub(CENTRE));
-    let others = tolerance(poses * joints.saturating_sub(chain));
+    let others = tolerance(poses * task.joints.saturating_sub(chain));
     let (errors, least, enough) = if chain > FITTED {
         (CONFIRMED, softest, LEAST_POSES)
     } else {

@@ -15,6 +15,8 @@ pub(super) struct Task<'a> {
     pub link: usize,
     pub surface: &'a Surface,
     pub force_model: ForceModel,
+    /// How many torques are measured.
+    pub joints: usize,
 }
 
 /// Contacts of a link with an obstacle at the poses of a window.

@@ -81,7 +81,7 @@ pub struct ContactEstimate {
     pub modes: Vec<Mode>,
     /// The data do not say which link or where on it, or motion has not confirmed yet that it is a push.
     pub ambiguous: bool,
-    /// Whether a push by one obstacle that stays explains the torques at the last poses: what is left over is within three
+    /// Whether a push by one obstacle that stays explains the torques at the last poses: what is left over is within four
     /// times the stated noise (a chi-square test at 99 %), and nothing shows that the force follows the motion less than on
     /// the softest obstacle sought. Where not, the contact is ambiguous, too.
     pub explained: bool,

@@ -1,6 +1,6 @@
 //! Per step and link: pose, and what a force on it does to the joints, all in the link's frame.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 
 use crate::robot::jacobian::for_each_column;
 use crate::robot::{Kinematics, Robot, WORLD};
@@ -62,6 +62,17 @@ impl Frame {
             products += torques * screw.torque;
         }
         (gram, products)
+    }
+
+    /// Adds the normal equations of a weight on the link: of its mass times gravity, and of that times its place.
+    pub fn add_weight(&self, down: &Vector3<f64>, gram: &mut Matrix4<f64>, products: &mut Vector4<f64>) {
+        let down = self.pose.inverse_transform_vector(down);
+        for screw in &self.screws {
+            let moment = down.cross(&screw.angular);
+            let torques = Vector4::new(screw.linear.dot(&down), moment.x, moment.y, moment.z);
+            *gram += torques * torques.transpose();
+            *products += torques * screw.torque;
+        }
     }
 
     /// Sets the torques that are left over of those measured without those of a force at a point, each over its noise;

@@ -29,6 +29,7 @@ mod search;
 mod spring;
 mod stages;
 mod state;
+mod weight;
 mod window;
 
 pub use columns::Columns;

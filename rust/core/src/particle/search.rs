@@ -88,6 +88,11 @@ impl Search {
         self.turn = 0;
     }
 
+    /// The contacts found on a link.
+    pub fn contacts(&self, link: usize) -> Option<&Contacts> {
+        self.found[link].as_ref().map(Obstacle::contacts)
+    }
+
     /// A pose of the window was replaced by one that follows on another.
     pub fn follow(&mut self, pose: usize, before: usize) {
         for obstacle in self.found.iter_mut().flatten() {

@@ -6,6 +6,7 @@ use super::*;
 use crate::particle::force_model::ForceModel;
 use crate::particle::frames::Frames;
 use crate::particle::spring::Slope;
+use crate::particle::weight;
 use crate::particle::window::Window;
 use crate::robot::{JointDescription, JointKind, LinkDescription, Robot, RobotDescription};
 use crate::spatial::Pose;
@@ -72,11 +73,16 @@ fn window(robot: &Robot, torque: impl Fn(&[f64], &Pose) -> Vec<f64>) -> Window {
     window
 }
 
-/// A fit to the outermost link's window from a start in the world.
-fn fit(robot: &Robot, window: &Window, force_model: ForceModel, start: Vector3<f64>) -> Obstacle {
+/// A fit to the outermost link's window.
+fn task<'a>(robot: &'a Robot, window: &'a Window, force_model: ForceModel) -> Task<'a> {
     let link = robot.links().len() - 1;
     let surface = robot.links()[link].surface.as_ref().expect("a capsule");
-    let task = Task { window, link, surface, force_model };
+    Task { window, link, surface, force_model, joints: robot.nv() }
+}
+
+/// A fit to the outermost link's window from a start in the world.
+fn fit(robot: &Robot, window: &Window, force_model: ForceModel, start: Vector3<f64>) -> Obstacle {
+    let task = task(robot, window, force_model);
     let mut obstacle = Obstacle::at(start);
     let mut residuals = Residuals::new(robot.nv());
     for _ in 0..STEPS {
@@ -150,5 +156,25 @@ fn a_couple_is_no_obstacle() {
         let found = fit(&robot, &window, ForceModel::Normal, centre + Vector3::repeat(radius));
         let checks = POSES * 5;
         assert!(found.contacts().misfit > 9.0 * 2.0 * checks as f64, "{}", found.contacts().misfit);
+    }
+}
+
+#[test]
+fn a_weight_explains_its_own_torques_and_not_those_of_a_ball() {
+    let robot = arm();
+    let link = robot.links().len() - 1;
+    let (centre, push) = ball(&robot, 0.0);
+    let carried = |q: &[f64], pose: &Pose| {
+        let place = pose.transform_point(&Vector3::new(0.02, -0.01, 0.2));
+        let jacobian = robot.jacobian(q, link, Some(place.into())).expect("a valid link");
+        (jacobian.rows(0, 3).transpose() * Vector3::new(0.0, 0.0, -15.0)).as_slice().to_vec()
+    };
+    let down = -Vector3::z();
+    let [carried, pushed] = [window(&robot, carried), window(&robot, push)];
+    for (window, as_well) in [(&carried, true), (&pushed, false)] {
+        let found = fit(&robot, window, ForceModel::Normal, centre);
+        let task = task(&robot, window, ForceModel::Normal);
+        let found = Some(found.contacts());
+        assert_eq!(weight::explains_as_well(&task, &[link], &down, found), as_well);
     }
 }
