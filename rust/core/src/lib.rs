@@ -17,6 +17,7 @@ pub mod robot;
 pub mod sensor;
 pub mod spatial;
 pub mod surface;
+mod torque;
 
 pub use error::{Error, Result};
 pub use nalgebra;

@@ -3,7 +3,7 @@
 use std::mem::size_of;
 
 use super::columns::Columns;
-use super::frames::Frames;
+use super::instant::Instant;
 use super::memory::space;
 use super::options::{FilterOptions, Likelihood};
 use crate::error::{Error, Result};
@@ -72,34 +72,34 @@ impl Births {
     }
 
     /// Makes all particles anew, the first ones at the first places.
-    pub fn spread(&self, frames: &Frames, random: &Stream, particles: &mut Columns) {
+    pub fn spread(&self, instant: &Instant, random: &Stream, particles: &mut Columns) {
         let count = particles.len();
         for k in 0..count {
             // Every place once where there are as many; otherwise evenly among the links.
             let place = (k as u128 * self.places.len() as u128 / count as u128) as usize;
-            self.make(frames, random, particles, k, place);
+            self.make(instant, random, particles, k, place);
         }
     }
 
     /// Makes particle k anew, at a place chosen at random.
-    pub fn anywhere(&self, frames: &Frames, random: &Stream, particles: &mut Columns, k: usize) {
+    pub fn anywhere(&self, instant: &Instant, random: &Stream, particles: &mut Columns, k: usize) {
         let place = (random.uniform(DRAWS * k as u64) * self.places.len() as f64) as usize;
-        self.make(frames, random, particles, k, place);
+        self.make(instant, random, particles, k, place);
     }
 
-    fn make(&self, frames: &Frames, random: &Stream, particles: &mut Columns, k: usize, place: usize) {
+    fn make(&self, instant: &Instant, random: &Stream, particles: &mut Columns, k: usize, place: usize) {
         let Some((link, place)) = self.places.get(place) else { return };
         let log_uniform = |[low, high]: [f64; 2], draw: u64| {
             (low + (high - low) * random.uniform(DRAWS * k as u64 + draw)).exp()
         };
         let radius = log_uniform(self.log_radius, 1);
         let stiffness = log_uniform(self.log_stiffness, 2);
-        let frame = &frames.links[*link as usize];
         particles.link[k] = *link;
         particles.triangle[k] = place.triangle;
         particles.point[k] = place.point;
         particles.normal[k] = place.normal;
-        particles.centre[k] = frame.pose.transform_point(&(place.point + place.normal * radius));
+        particles.centre[k] =
+            instant.pose(*link as usize).transform_point(&(place.point + place.normal * radius));
         particles.distance[k] = radius;
         particles.force[k] = self.force[0];
         particles.stiffness[k] = stiffness;

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::contacts::{Contacts, Task};
-use super::frames::Frames;
+use super::instant::Instant;
 use super::options::{FilterOptions, Likelihood, Motion};
 use super::push::Push;
 use super::search::{EstimatedPush, Search};
@@ -52,14 +52,14 @@ pub(super) struct Check {
 }
 
 impl Check {
-    pub fn new(robot: &Robot, frames: &Frames, options: &FilterOptions, torque_noise: Vec<f64>) -> Self {
+    pub fn new(robot: &Robot, instant: &Instant, options: &FilterOptions, torque_noise: Vec<f64>) -> Self {
         // Only where an obstacle is assumed and its force is believed to follow the motion.
         let springy = options.motion == Motion::Curvature && options.likelihood == Likelihood::Gaussian;
         Check {
             left: vec![0.0; torque_noise.len()],
             torque_noise,
             relative_noise: options.relative_noise,
-            window: Window::new(frames),
+            window: Window::new(instant),
             search: springy.then(|| Search::new(robot.links().len(), robot.nv())),
             stiffness: options.stiffness_range,
             down: robot.gravity.try_normalize(0.0),
@@ -81,18 +81,19 @@ impl Check {
     /// left over, in standard deviations of the stated noise.
     pub fn take_in(
         &mut self,
+        robot: &Robot,
         push: &Push<'_>,
         other: Option<&Push<'_>>,
         estimated: &EstimatedPush,
-        torque: &[f64],
     ) -> f64 {
-        let own = self.left_over(push, torque);
-        let left = other.map_or(own, |other| self.left_over(other, torque).min(own));
-        let opened = self.window.take_in(push.frames, push.link, left);
+        let own = self.left_over(push);
+        let left = other.map_or(own, |other| self.left_over(other).min(own));
+        let opened = self.window.take_in(push.instant, push.link, left);
+        let torque = &push.instant.torque;
         if let (true, Some(search)) = (opened, &mut self.search) {
             search.follow(self.window.newest(), self.window.before());
         }
-        let surface = push.robot.links()[push.link].surface.as_ref();
+        let surface = robot.links()[push.link].surface.as_ref();
         (self.explained, self.trusted) = match (&mut self.search, surface) {
             (Some(search), Some(surface)) => {
                 let Push { link, force_model, .. } = *push;
@@ -100,8 +101,9 @@ impl Check {
                 let task = Task { window: &self.window, link, surface, force_model, joints };
                 let (explained, trusted) = judge(search, &task, estimated, self.stiffness);
                 let down = self.down.filter(|_| trusted);
-                let as_well =
-                    |down| weight::explains_as_well(&task, &push.frames.wanted, &down, search.contacts(link));
+                let as_well = |down| {
+                    weight::explains_as_well(&task, &push.instant.frames.wanted, &down, search.contacts(link))
+                };
                 (explained, trusted && !down.is_some_and(as_well))
             }
             _ => {
@@ -115,9 +117,9 @@ impl Check {
     }
 
     /// Squared norm of the torques that the best force of a push leaves over, each over its stated noise.
-    fn left_over(&mut self, push: &Push<'_>, torque: &[f64]) -> f64 {
-        self.left.copy_from_slice(torque);
-        push.subtract(&mut self.left);
+    fn left_over(&mut self, push: &Push<'_>) -> f64 {
+        let torque = &push.instant.torque;
+        push.left_over(&mut self.left);
         let noise =
             self.torque_noise.iter().zip(torque).map(|(least, tau)| least.hypot(self.relative_noise * tau));
         self.left.iter().zip(noise).map(|(left, noise)| (left / noise).powi(2)).sum()

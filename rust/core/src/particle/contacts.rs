@@ -2,11 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::force_model::ForceModel;
 use super::motion::signed;
-use super::push::BestForce;
 use super::window::{Sample, Window, POSES};
 use crate::surface::Surface;
+use crate::torque::{BestForce, ForceModel};
 
 /// What an obstacle is fitted to.
 #[derive(Clone, Copy)]
@@ -69,13 +68,13 @@ impl Contact {
         triangle: i64,
         residual: &mut [f64],
     ) -> Contact {
-        let frame = &sample.links[task.link];
+        let (frame, target) = (&sample.links[task.link], sample.target.on(task.link));
         let local = frame.pose.inverse_transform_point(centre);
         let near = task.surface.closest_point_near(&local, triangle);
         let (distance, normal) = signed(&near, &local);
-        let best = BestForce::of(frame, task.force_model, &near.point, &normal);
+        let best = BestForce::of(frame, target, task.force_model, &near.point, &normal);
         let joints = frame.joints();
-        let (chain, left) = frame.left_over(&near.point, &best.force, &mut residual[..joints]);
+        let (chain, left) = frame.left_over(&near.point, &best.force, target, &mut residual[..joints]);
         residual[joints..joints + 2].copy_from_slice(&best.across);
         let across = best.across[0].powi(2) + best.across[1].powi(2);
         Contact {
@@ -85,7 +84,7 @@ impl Contact {
             force: best.normal,
             variance: best.variance,
             misfit: left + across,
-            others: (sample.measured - chain).max(0.0),
+            others: (sample.target.squared - chain).max(0.0),
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::frames::Frames;
 use super::modes::Modes;
+use crate::torque::Frames;
 
 /// What happened at an update.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

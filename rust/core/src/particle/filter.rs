@@ -104,18 +104,18 @@ impl ContactParticleFilter {
 
     /// Indices of the links that are looked on.
     pub fn links(&self) -> &[usize] {
-        &self.state.frames.wanted
+        &self.state.instant.frames.wanted
     }
 
     /// Contact point of particle k, world frame [m].
     pub fn point(&self, k: usize) -> Vector3<f64> {
-        let FilterState { frames, particles, .. } = &self.state;
-        frames.links[particles.link[k] as usize].pose.transform_point(&particles.point[k])
+        let FilterState { instant, particles, .. } = &self.state;
+        instant.pose(particles.link[k] as usize).transform_point(&particles.point[k])
     }
 
     /// Outward normal of particle k, world frame.
     pub fn normal(&self, k: usize) -> Vector3<f64> {
-        let FilterState { frames, particles, .. } = &self.state;
-        frames.links[particles.link[k] as usize].pose.rotation * particles.normal[k]
+        let FilterState { instant, particles, .. } = &self.state;
+        instant.pose(particles.link[k] as usize).rotation * particles.normal[k]
     }
 }

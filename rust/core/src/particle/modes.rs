@@ -4,10 +4,10 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::columns::Columns;
 use super::estimate::Mode;
-use super::frames::Frames;
 use super::memory::{filled, space};
 use crate::error::Result;
 use crate::robot::Robot;
+use crate::torque::Frames;
 
 /// Edge of a cell [m].
 const CELL: f64 = 0.015;

@@ -4,9 +4,9 @@ use nalgebra::Vector3;
 
 use super::birth::Births;
 use super::columns::Slice;
-use super::force_model::ResponseModel;
-use super::frames::Frames;
+use super::instant::Instant;
 use super::options::Motion;
+use super::response::ResponseModel;
 use super::schedule::Noise;
 use crate::math::random::Stream;
 use crate::robot::Robot;
@@ -40,7 +40,7 @@ impl Move {
     pub fn apply(
         &self,
         robot: &Robot,
-        frames: &Frames,
+        instant: &Instant,
         births: &Births,
         start: usize,
         particles: &mut Slice<'_>,
@@ -49,18 +49,18 @@ impl Move {
             let Some(surface) = robot.links()[particles.link[k] as usize].surface.as_ref() else { continue };
             let number = (start + k) as u64;
             match self.motion {
-                Motion::Curvature => self.roll(surface, frames, number, particles, k),
+                Motion::Curvature => self.roll(surface, instant, number, particles, k),
                 Motion::FixedOnLink => self.stay_on_link(surface, number, particles, k),
-                Motion::FixedInWorld => self.stay_in_world(surface, frames, number, particles, k),
+                Motion::FixedInWorld => self.stay_in_world(surface, instant, number, particles, k),
             }
             if particles.fresh[k] {
                 particles.fresh[k] = false;
                 // First without friction, whose limit is the force's.
                 particles.force[k] = 0.0;
-                let bare = self.response_model.apply(frames, particles, k);
+                let bare = self.response_model.apply(instant, particles, k);
                 (particles.force[k], particles.force_variance[k]) = births.force(bare.gain, bare.product);
             }
-            self.response_model.apply(frames, particles, k);
+            self.response_model.apply(instant, particles, k);
             if self.sampled {
                 self.draw(number, particles, k);
             }
@@ -78,18 +78,18 @@ impl Move {
     }
 
     /// The obstacle stays, and the contact is the point nearest to its centre of curvature (Bimbo 2019, eq. 8).
-    fn roll(&self, surface: &Surface, frames: &Frames, number: u64, particles: &mut Slice<'_>, k: usize) {
-        let frame = &frames.links[particles.link[k] as usize];
+    fn roll(&self, surface: &Surface, instant: &Instant, number: u64, particles: &mut Slice<'_>, k: usize) {
+        let link = particles.link[k] as usize;
         let draw = number * DRAWS;
         let whole = (number + self.step).is_multiple_of(REFRESH);
         if self.random.uniform(draw) < self.noise.redraw {
             let [low, high] = self.log_radius;
             let radius = (low + (high - low) * self.random.uniform(draw + 1)).exp();
             let centre = particles.point[k] + particles.normal[k] * radius;
-            particles.centre[k] = frame.before.transform_point(&centre);
+            particles.centre[k] = instant.before(link).transform_point(&centre);
             particles.distance[k] = radius;
         }
-        let local = frame.pose.inverse_transform_point(&particles.centre[k]);
+        let local = instant.pose(link).inverse_transform_point(&particles.centre[k]);
         let triangle = particles.triangle[k];
         let near = if whole {
             surface.closest_point_from(&local, triangle)
@@ -126,15 +126,15 @@ impl Move {
     fn stay_in_world(
         &self,
         surface: &Surface,
-        frames: &Frames,
+        instant: &Instant,
         number: u64,
         particles: &mut Slice<'_>,
         k: usize,
     ) {
-        let frame = &frames.links[particles.link[k] as usize];
-        let fixed = frame.before.transform_point(&particles.point[k]);
-        let near =
-            surface.closest_point_near(&frame.pose.inverse_transform_point(&fixed), particles.triangle[k]);
+        let link = particles.link[k] as usize;
+        let fixed = instant.before(link).transform_point(&particles.point[k]);
+        let near = surface
+            .closest_point_near(&instant.pose(link).inverse_transform_point(&fixed), particles.triangle[k]);
         place(particles, k, &near, near.normal);
         self.stay_on_link(surface, number, particles, k);
     }

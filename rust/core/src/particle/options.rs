@@ -2,10 +2,10 @@
 
 use std::ops::RangeInclusive;
 
-use super::force_model::ForceModel;
 use super::schedule::Schedule;
 use crate::error::{Error, Result};
 use crate::robot::{Robot, LARGEST, WORLD};
+use crate::torque::ForceModel;
 
 /// How a contact moves with the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -3,12 +3,13 @@
 use nalgebra::Vector3;
 
 use super::columns::Slice;
-use super::force_model::{across, ResponseModel};
-use super::frames::Frames;
+use super::instant::Instant;
 use super::motion::{place, signed};
 use super::options::Motion;
+use super::response::ResponseModel;
 use crate::math::random::Stream;
 use crate::robot::Robot;
+use crate::spatial::basis::across;
 
 /// Random numbers a particle uses at most.
 const DRAWS: u64 = 4;
@@ -28,7 +29,7 @@ pub(super) struct Rejuvenation {
 
 impl Rejuvenation {
     /// Moves each particle by its `spread`, at the present pose; the first one has the number `start`.
-    pub fn apply(&self, robot: &Robot, frames: &Frames, start: usize, particles: &mut Slice<'_>) {
+    pub fn apply(&self, robot: &Robot, instant: &Instant, start: usize, particles: &mut Slice<'_>) {
         for k in 0..particles.len() {
             let spread = particles.spread[k];
             let Some(surface) = robot.links()[particles.link[k] as usize].surface.as_ref() else { continue };
@@ -36,14 +37,14 @@ impl Rejuvenation {
                 continue;
             }
             particles.spread[k] = 0.0;
-            let frame = &frames.links[particles.link[k] as usize];
+            let pose = instant.pose(particles.link[k] as usize);
             let [along, beside] = self.random.normals((start + k) as u64 * DRAWS);
             let aside = tangent(&particles.normal[k], along * spread, beside * spread);
             if self.motion == Motion::Curvature {
-                let local = frame.pose.inverse_transform_point(&particles.centre[k]) + aside;
+                let local = pose.inverse_transform_point(&particles.centre[k]) + aside;
                 let near = surface.closest_point_near(&local, particles.triangle[k]);
                 let (distance, normal) = signed(&near, &local);
-                particles.centre[k] = frame.pose.transform_point(&local);
+                particles.centre[k] = pose.transform_point(&local);
                 particles.distance[k] = distance;
                 place(particles, k, &near, normal);
             } else {
@@ -54,7 +55,7 @@ impl Rejuvenation {
                 continue;
             }
             let (gain, product) = (particles.gain[k], particles.product[k]);
-            let here = self.response_model.apply(frames, particles, k);
+            let here = self.response_model.apply(instant, particles, k);
             let scale = (here.product * gain) / (here.gain * product);
             if scale > 0.0 && particles.force[k] * scale < self.most_force {
                 let [low, high] = self.stiffness_range;

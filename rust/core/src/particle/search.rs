@@ -3,9 +3,9 @@
 use nalgebra::Vector3;
 
 use super::contacts::{Contacts, Task};
-use super::force_model::across;
 use super::obstacle::{Obstacle, Residuals};
 use super::window::POSES;
+use crate::spatial::basis::across;
 
 /// Steps an update from the obstacle that was found before, and from another start. With few poses a step costs less,
 /// and more are taken, so that all is found as soon as the poses show it.

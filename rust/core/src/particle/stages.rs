@@ -39,13 +39,13 @@ impl Stages {
     /// Weighs all particles, sharpness chosen first; returns how many are effective.
     pub fn likelihood(&mut self) -> f64 {
         let noise = self.noise();
-        self.0.weigh(self.0.frames.displacement(), &noise)
+        self.0.weigh(self.0.instant.displacement(), &noise)
     }
 
     /// Draws all particles anew by their weights, and moves copies apart.
     pub fn resampling(&mut self) {
         let noise = self.noise();
-        self.0.resample(&noise, self.0.frames.displacement(), 0.01);
+        self.0.resample(&noise, self.0.instant.displacement(), 0.01);
     }
 
     /// Finds the modes and says the estimate.
@@ -59,6 +59,6 @@ impl Stages {
     }
 
     fn noise(&self) -> Noise {
-        Noise::at(&self.0.options, self.0.age, self.0.frames.displacement())
+        Noise::at(&self.0.options, self.0.age, self.0.instant.displacement())
     }
 }

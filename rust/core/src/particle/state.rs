@@ -9,8 +9,7 @@ use super::birth::{Births, PLACE};
 use super::check::Check;
 use super::columns::{Columns, Slice};
 use super::estimate::{ContactEstimate, Event};
-use super::force_model::ResponseModel;
-use super::frames::Frames;
+use super::instant::Instant;
 use super::left_over::{turning, LeftOver};
 use super::likelihood::{Belief, Weighing};
 use super::memory::{filled, space};
@@ -20,6 +19,7 @@ use super::options::{FilterOptions, Likelihood, Motion};
 use super::parallel::Course;
 use super::push::Push;
 use super::resampling::{effective_share, normalise};
+use super::response::ResponseModel;
 use super::schedule::Noise;
 use super::search::EstimatedPush;
 use crate::detection::Gate;
@@ -51,12 +51,9 @@ pub(super) struct FilterState {
     pub stop: Arc<AtomicBool>,
     torque_noise: Vec<f64>,
     gate: Gate,
-    /// The measurement: torques, and their noise.
-    torque: Vec<f64>,
-    noise: Vec<f64>,
     /// Whether a velocity variable is a rotation's.
     turning: Vec<bool>,
-    pub frames: Frames,
+    pub instant: Instant,
     births: Births,
     pub particles: Columns,
     spare: Columns,
@@ -80,27 +77,24 @@ pub(super) struct FilterState {
 impl FilterState {
     pub fn new(robot: Arc<Robot>, options: FilterOptions) -> Result<Self> {
         let wanted = options.check(&robot)?;
-        let nv = robot.nv();
         let count = options.particles;
         // All of it at once, so that a part is not filled in vain.
         drop(space::<[u8; PARTICLE]>(count)?);
         let torque_noise = FilterOptions::per_joint(&robot, "torque_noise", &options.torque_noise)?;
         let births = Births::new(&robot, &wanted, &options)?;
         let links = wanted.len();
-        let frames = Frames::new(&robot, wanted);
+        let instant = Instant::new(&robot, wanted);
         Ok(Self {
-            check: Check::new(&robot, &frames, &options, torque_noise.clone()),
+            check: Check::new(&robot, &instant, &options, torque_noise.clone()),
             torque_noise,
             gate: Gate::with_hysteresis(
                 FilterOptions::per_joint(&robot, "torque_threshold", &options.torque_threshold)?,
                 RELEASE,
             ),
-            torque: vec![0.0; nv],
-            noise: vec![1.0; nv],
             turning: turning(&robot),
             births,
             estimate: ContactEstimate::new(links, MOST_MODES),
-            frames,
+            instant,
             particles: Columns::new(count)?,
             spare: Columns::new(count)?,
             weights: filled(1.0 / count as f64, count)?,
@@ -133,23 +127,23 @@ impl FilterState {
     pub fn read(&mut self, q: &[f64], tau_ext: &[f64]) -> Result<()> {
         self.robot.check_configuration(q)?;
         self.robot.check_tangent("tau_ext", tau_ext)?;
-        self.torque.copy_from_slice(tau_ext);
-        for ((noise, least), tau) in self.noise.iter_mut().zip(&self.torque_noise).zip(tau_ext) {
+        self.instant.torque.copy_from_slice(tau_ext);
+        for ((noise, least), tau) in self.instant.deviation.iter_mut().zip(&self.torque_noise).zip(tau_ext) {
             *noise = match self.options.likelihood {
                 Likelihood::Gaussian => least.hypot(self.options.relative_noise * tau),
                 Likelihood::Exponential => 1.0,
             };
         }
-        self.frames.update(&self.robot, q, tau_ext, &self.noise);
+        self.instant.update(&self.robot, q);
         Ok(())
     }
 
     /// Updates particles and estimate by the measurement that was read.
     pub fn step(&mut self) {
-        let moved = if self.step == 0 { 0.0 } else { self.frames.displacement() };
+        let moved = if self.step == 0 { 0.0 } else { self.instant.displacement() };
         let event = self.detect(moved);
         // What moves behind the contact tells nothing of it.
-        let moved = self.estimate.link.map_or(moved, |link| self.frames.links[link].displacement());
+        let moved = self.estimate.link.map_or(moved, |link| self.instant.displacement_of(link));
         if self.step == 0 || matches!(event, Event::Started | Event::Jumped) {
             self.spread();
         }
@@ -182,7 +176,7 @@ impl FilterState {
 
     /// Says what the weighted particles show.
     pub fn estimate_contact(&mut self, event: Event, effective: f64, moved: f64) -> LeftOver {
-        self.modes.find(&self.robot, &self.frames, &self.particles, &self.weights);
+        self.modes.find(&self.robot, &self.instant.frames, &self.particles, &self.weights);
         let left = self.left_over();
         self.adaptation.learn(left.misfit, self.active_joints());
         self.update_estimate(event, effective, moved, &left);
@@ -202,7 +196,7 @@ impl FilterState {
     /// Whether a contact begins, goes on or ends.
     fn detect(&mut self, moved: f64) -> Event {
         let before = self.gate.any_on();
-        let felt = self.gate.update(&self.torque, 1.0);
+        let felt = self.gate.update(&self.instant.torque, 1.0);
         match (before, felt) {
             (false, false) => Event::None,
             (false, true) => Event::Started,
@@ -214,9 +208,9 @@ impl FilterState {
 
     /// Begins the search anew.
     fn spread(&mut self) {
-        self.frames.stand();
+        self.instant.stand();
         let random = self.stream();
-        self.births.spread(&self.frames, &random, &mut self.particles);
+        self.births.spread(&self.instant, &random, &mut self.particles);
         self.rejuvenate();
         self.adaptation = Adaptation::default();
         self.age = 0;
@@ -235,9 +229,9 @@ impl FilterState {
             random: self.stream(),
             step: self.step,
         };
-        let Self { robot, frames, births, particles, options, stop, .. } = self;
+        let Self { robot, instant, births, particles, options, stop, .. } = self;
         let work =
-            |start: usize, mut slice: Slice<'_>| motion.apply(robot, frames, births, start, &mut slice);
+            |start: usize, mut slice: Slice<'_>| motion.apply(robot, instant, births, start, &mut slice);
         Course { threads: options.threads, stop }.for_each(particles.slice(), 0, &work);
     }
 
@@ -283,28 +277,26 @@ impl FilterState {
 
     /// How many joints feel the contact.
     fn active_joints(&self) -> usize {
-        self.torque
-            .iter()
-            .zip(&self.torque_noise)
-            .filter(|(torque, noise)| torque.abs() > 3.0 * **noise)
-            .count()
+        let torque = self.instant.torque.iter();
+        torque.zip(&self.torque_noise).filter(|(torque, noise)| torque.abs() > 3.0 * **noise).count()
     }
 
     /// What the best particle leaves over.
     fn left_over(&self) -> LeftOver {
-        LeftOver::of(&self.particles, &self.weights, self.frames.measured, self.torque.len())
+        LeftOver::of(&self.particles, &self.weights, self.instant.target.squared, self.instant.torque.len())
     }
 
     fn update_estimate(&mut self, event: Event, effective: f64, moved: f64, left: &LeftOver) {
-        let error = left.moment(&self.torque, &self.noise, &self.turning) * self.adaptation.averaged();
-        let Self { estimate, modes, frames, check, robot, particles, options, torque, .. } = self;
+        let error = left.moment(&self.instant.torque, &self.instant.deviation, &self.turning)
+            * self.adaptation.averaged();
+        let Self { estimate, modes, instant, check, robot, particles, options, .. } = self;
         let sure = (estimate.contact && !estimate.ambiguous)
             .then(|| (estimate.point, MOVED_ON + 3.0 * estimate.covariance.trace().sqrt()));
         estimate.clear();
         estimate.event = event;
         estimate.effective_samples = effective;
         let springy = options.motion == Motion::Curvature;
-        estimate.set_contact(modes, frames, springy, error);
+        estimate.set_contact(modes, &instant.frames, springy, error);
         if let (Event::Continued, Some((before, reach))) = (event, sure) {
             if (estimate.point - before).norm() > reach + moved {
                 estimate.event = Event::Changed;
@@ -314,10 +306,9 @@ impl FilterState {
             check.restart();
         }
         let Some(link) = estimate.link else { return };
-        let pose = &frames.links[link].pose;
+        let pose = instant.pose(link);
         let push = Push {
-            robot,
-            frames,
+            instant,
             force_model: options.force_model,
             link,
             point: pose.inverse_transform_point(&estimate.point),
@@ -334,7 +325,7 @@ impl FilterState {
             local: push.point,
             centre: on_link.then_some(particles.centre[left.best]),
         };
-        estimate.residual = check.take_in(&push, other.as_ref(), &estimated, torque);
+        estimate.residual = check.take_in(robot, &push, other.as_ref(), &estimated);
         estimate.explained = check.explained();
         // What is not explained is never sure, nor what has not been confirmed yet.
         estimate.ambiguous |= !check.trusted();

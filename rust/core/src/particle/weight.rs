@@ -26,7 +26,7 @@ pub(super) fn explains_as_well(
     let Some(contacts) = contacts else { return true };
     let samples = task.window.samples();
     let push = contacts.misfit + contacts.others;
-    let measured: f64 = samples.iter().map(|sample| sample.measured).sum();
+    let measured: f64 = samples.iter().map(|sample| sample.target.squared).sum();
     let weight = measured - links.iter().map(|&link| explained(task.window, link, down)).fold(0.0, f64::max);
     // Variance of the errors in units of the stated one, as the push leaves them, never smaller than stated.
     let variance = (push / (samples.len() * task.joints) as f64).max(1.0);
@@ -37,7 +37,7 @@ pub(super) fn explains_as_well(
 fn explained(window: &Window, link: usize, down: &Vector3<f64>) -> f64 {
     let (mut gram, mut products) = (Matrix4::zeros(), Vector4::zeros());
     for sample in window.samples() {
-        sample.links[link].add_weight(down, &mut gram, &mut products);
+        sample.links[link].add_weight(down, sample.target.on(link), &mut gram, &mut products);
     }
     let ridge = RIDGE * gram.trace();
     (gram + Matrix4::identity() * ridge)

@@ -1,7 +1,8 @@
 //! The last poses of the robot, and the torques that were measured at them.
 
-use super::frames::{Frame, Frames};
+use super::instant::Instant;
 use super::schedule::NEW_POSE;
+use crate::torque::{Frame, Target};
 
 /// Poses that are kept: some eight motions of three samples, which tell a push on a link moved by two joints only from
 /// what is none.
@@ -12,9 +13,9 @@ pub(super) const POSES: usize = 24;
 pub(super) struct Sample {
     /// One a link of the robot, set for those that can be in contact.
     pub links: Vec<Frame>,
-    /// Squared norm of the measured torques, each over its noise.
-    pub measured: f64,
-    /// What the best push left over when it was measured, likewise, in stated noise.
+    /// The measured torques over their noise.
+    pub target: Target,
+    /// Squared norm of what the best push left over when it was measured, in stated noise.
     pub left: f64,
 }
 
@@ -27,8 +28,9 @@ pub(super) struct Window {
 }
 
 impl Window {
-    pub fn new(frames: &Frames) -> Self {
-        let sample = Sample { links: frames.links.clone(), measured: 0.0, left: 0.0 };
+    pub fn new(instant: &Instant) -> Self {
+        let sample =
+            Sample { links: instant.frames.links.clone(), target: instant.target.clone(), left: 0.0 };
         Window { samples: vec![sample; POSES], len: 0, newest: 0 }
     }
 
@@ -63,20 +65,22 @@ impl Window {
 
     /// Takes in the present pose: beside the newest sample where that is a new pose of a link, in its place otherwise.
     /// Returns whether it is beside the others.
-    pub fn take_in(&mut self, frames: &Frames, link: usize, left: f64) -> bool {
+    pub fn take_in(&mut self, instant: &Instant, link: usize, left: f64) -> bool {
         let opened = self.len < 2 || {
-            let [newest, before] = [self.newest, self.before()].map(|place| &self.samples[place].links[link]);
-            newest.apart(&before.pose) >= NEW_POSE
+            let [newest, before] =
+                [self.newest, self.before()].map(|place| &self.samples[place].links[link].pose);
+            instant.apart(link, newest, before) >= NEW_POSE
         };
         if opened {
             self.newest = if self.len == 0 { 0 } else { (self.newest + 1) % POSES };
             self.len = (self.len + 1).min(POSES);
         }
         let sample = &mut self.samples[self.newest];
-        for &link in &frames.wanted {
-            sample.links[link].copy(&frames.links[link]);
+        for &link in &instant.frames.wanted {
+            sample.links[link].copy(&instant.frames.links[link]);
         }
-        (sample.measured, sample.left) = (frames.measured, left);
+        sample.target.copy(&instant.target, &instant.frames.wanted);
+        sample.left = left;
         opened
     }
 }

@@ -1,5 +1,6 @@
 //! Poses and spatial vectors: linear part first, as everywhere in this crate.
 
+pub(crate) mod basis;
 mod pose;
 pub(crate) mod vector;
 

@@ -3,14 +3,14 @@ use std::f64::consts::FRAC_PI_2;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::*;
-use crate::particle::force_model::ForceModel;
-use crate::particle::frames::Frames;
+use crate::particle::instant::Instant;
 use crate::particle::spring::Slope;
 use crate::particle::weight;
 use crate::particle::window::Window;
 use crate::robot::{JointDescription, JointKind, LinkDescription, Robot, RobotDescription};
 use crate::spatial::Pose;
 use crate::surface::{Geometry, Part};
+use crate::torque::ForceModel;
 
 const RADIUS: f64 = 0.05;
 const STIFFNESS: f64 = 2500.0;
@@ -59,16 +59,16 @@ fn arm() -> Robot {
 /// Small motions of the arm, with the torques that `torque` gives at a pose, for the outermost link.
 fn window(robot: &Robot, torque: impl Fn(&[f64], &Pose) -> Vec<f64>) -> Window {
     let link = robot.links().len() - 1;
-    let mut frames = Frames::new(robot, vec![link]);
-    let mut window = Window::new(&frames);
+    let mut instant = Instant::new(robot, vec![link]);
+    let mut window = Window::new(&instant);
     for k in 0..POSES {
         let q: Vec<f64> = (0..robot.nv())
             .map(|i| 0.3 * (1.0 + i as f64).sin() + 0.02 * (1.3 * k as f64 + 2.1 * i as f64).sin())
             .collect();
-        let torque = torque(&q, &robot.link_pose(&q, link).expect("a valid link"));
-        let noise: Vec<f64> = torque.iter().map(|torque| f64::hypot(0.02, 0.03 * torque)).collect();
-        frames.update(robot, &q, &torque, &noise);
-        window.take_in(&frames, link, 0.0);
+        instant.torque = torque(&q, &robot.link_pose(&q, link).expect("a valid link"));
+        instant.deviation = instant.torque.iter().map(|torque| f64::hypot(0.02, 0.03 * torque)).collect();
+        instant.update(robot, &q);
+        window.take_in(&instant, link, 0.0);
     }
     window
 }

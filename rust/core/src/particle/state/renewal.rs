@@ -20,7 +20,7 @@ impl FilterState {
     pub(super) fn reinitialise(&mut self, noise: &Noise, moved: f64, event: Event) -> (f64, Event) {
         let count = self.particles.len();
         let kept = self.resample(noise, moved, REINITIALISED);
-        self.frames.stand();
+        self.instant.stand();
         self.adaptation.begin();
         self.predict(&Noise::none());
         let effective = self.weigh(0.0, &Noise::none());
@@ -50,7 +50,7 @@ impl FilterState {
         }
         let random = self.stream();
         for k in kept..count {
-            self.births.anywhere(&self.frames, &random, &mut self.particles, k);
+            self.births.anywhere(&self.instant, &random, &mut self.particles, k);
         }
         self.weights.fill(1.0 / count as f64);
         self.rejuvenate();
@@ -66,8 +66,8 @@ impl FilterState {
             most_force: self.options.force_range[1],
             random: self.stream(),
         };
-        let Self { robot, frames, particles, options, stop, .. } = self;
-        let work = |start: usize, mut slice: Slice<'_>| apart.apply(robot, frames, start, &mut slice);
+        let Self { robot, instant, particles, options, stop, .. } = self;
+        let work = |start: usize, mut slice: Slice<'_>| apart.apply(robot, instant, start, &mut slice);
         Course { threads: options.threads, stop }.for_each(particles.slice(), 0, &work);
     }
 }

@@ -1,0 +1,12 @@
+//! What explains an external torque: how large its errors are, and what a force at a surface point does to the joints.
+
+mod fit;
+mod force_model;
+mod frames;
+mod target;
+
+pub(crate) use fit::{BestForce, NormalFit};
+pub(crate) use force_model::directions;
+pub use force_model::ForceModel;
+pub(crate) use frames::{Frame, Frames};
+pub(crate) use target::Target;
