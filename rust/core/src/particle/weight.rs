@@ -37,7 +37,9 @@ pub(super) fn explains_as_well(
 fn explained(window: &Window, link: usize, down: &Vector3<f64>) -> f64 {
     let (mut gram, mut products) = (Matrix4::zeros(), Vector4::zeros());
     for sample in window.samples() {
-        sample.links[link].add_weight(down, sample.target.on(link), &mut gram, &mut products);
+        let (own_gram, own_products) = sample.links[link].weight(down, sample.target.on(link));
+        gram += own_gram;
+        products += own_products;
     }
     let ridge = RIDGE * gram.trace();
     (gram + Matrix4::identity() * ridge)

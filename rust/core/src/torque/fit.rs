@@ -4,6 +4,7 @@ use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 use super::force_model::{directions, ForceModel};
 use super::frames::Frame;
+use super::target::LinkTarget;
 
 /// The torques of a unit of normal force against a target, each joint over its noise, with the force across the normal
 /// integrated out.
@@ -56,7 +57,7 @@ impl BestForce {
     /// At a point of a link, with its outward normal (both in the link's frame).
     pub fn of(
         frame: &Frame,
-        target: &[f64],
+        target: &LinkTarget,
         force_model: ForceModel,
         point: &Vector3<f64>,
         normal: &Vector3<f64>,

@@ -1,10 +1,11 @@
 //! What a force on a link does to the joints at one pose, each joint over its noise. The measured torque is no part of it.
 
-use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
+use nalgebra::{Matrix3, Matrix4, Matrix6, Matrix6x3, Matrix6x4, Vector3, Vector4, Vector6};
 
+use super::target::LinkTarget;
 use crate::robot::jacobian::for_each_column;
 use crate::robot::{Kinematics, Robot, WORLD};
-use crate::spatial::vector::split;
+use crate::spatial::vector::{split, stack};
 use crate::spatial::Pose;
 
 /// A joint axis in a link's frame, divided by the joint's noise: its torque under a force at a point is
@@ -23,12 +24,20 @@ pub(crate) struct Frame {
     axes: Vec<Axis>,
     /// Which ones these are.
     variables: Vec<usize>,
+    /// `J J^T` of the columns (linear, angular) of all axes: the squared norm of a wrench's torques is
+    /// `wrench^T gram wrench`, for a wrench at the link's origin in its frame.
+    gram: Matrix6<f64>,
 }
 
 impl Frame {
     /// How many velocity variables move the link.
     pub fn joints(&self) -> usize {
         self.axes.len()
+    }
+
+    /// What a wrench at the link's origin does, as the torques of these joints over their noise.
+    pub fn column(&self, axis: usize) -> Vector6<f64> {
+        stack(&self.axes[axis].linear, &self.axes[axis].angular)
     }
 
     /// The velocity variables that move the link.
@@ -39,15 +48,9 @@ impl Frame {
     /// Squared norm of the torques of a unit force along the inward normal, and their product with a target, each joint
     /// over its noise (Bimbo 2019, eqs. 6 and 7).
     #[inline]
-    pub fn response(&self, point: &Vector3<f64>, normal: &Vector3<f64>, target: &[f64]) -> (f64, f64) {
-        let moment = point.cross(normal);
-        let (mut gain, mut product) = (0.0, 0.0);
-        for (axis, target) in self.axes.iter().zip(target) {
-            let torque = -(axis.linear.dot(normal) + axis.angular.dot(&moment));
-            gain += torque * torque;
-            product += torque * target;
-        }
-        (gain, product)
+    pub fn response(&self, point: &Vector3<f64>, normal: &Vector3<f64>, target: &LinkTarget) -> (f64, f64) {
+        let wrench = stack(normal, &point.cross(normal));
+        (wrench.dot(&(self.gram * wrench)), -wrench.dot(&target.product))
     }
 
     /// As [`response`](Self::response), of unit forces in three directions: the Gram matrix of their torques, and the
@@ -57,35 +60,21 @@ impl Frame {
         &self,
         point: &Vector3<f64>,
         forces: &[Vector3<f64>; 3],
-        target: &[f64],
+        target: &LinkTarget,
     ) -> (Matrix3<f64>, Vector3<f64>) {
-        let moments = forces.map(|force| point.cross(&force));
-        let (mut gram, mut products) = (Matrix3::zeros(), Vector3::zeros());
-        for (axis, target) in self.axes.iter().zip(target) {
-            let torque = |i: usize| axis.linear.dot(&forces[i]) + axis.angular.dot(&moments[i]);
-            let torques = Vector3::new(torque(0), torque(1), torque(2));
-            gram += torques * torques.transpose();
-            products += torques * *target;
-        }
-        (gram, products)
+        let wrenches = Matrix6x3::from_columns(&forces.map(|force| stack(&force, &point.cross(&force))));
+        (wrenches.tr_mul(&(self.gram * wrenches)), wrenches.tr_mul(&target.product))
     }
 
-    /// Adds the normal equations of a weight that the link carries: of its mass times gravity, and of that times its
-    /// place. `down` is the direction of gravity in the world frame.
-    pub fn add_weight(
-        &self,
-        down: &Vector3<f64>,
-        target: &[f64],
-        gram: &mut Matrix4<f64>,
-        products: &mut Vector4<f64>,
-    ) {
+    /// The normal equations of a weight that the link carries: of its mass times gravity, and of that times its place.
+    /// `down` is the direction of gravity in the world frame.
+    pub fn weight(&self, down: &Vector3<f64>, target: &LinkTarget) -> (Matrix4<f64>, Vector4<f64>) {
         let down = self.pose.inverse_transform_vector(down);
-        for (axis, target) in self.axes.iter().zip(target) {
-            let moment = down.cross(&axis.angular);
-            let torques = Vector4::new(axis.linear.dot(&down), moment.x, moment.y, moment.z);
-            *gram += torques * torques.transpose();
-            *products += torques * *target;
-        }
+        let mut wrenches = Matrix6x4::zeros();
+        wrenches.fixed_view_mut::<3, 1>(0, 0).copy_from(&down);
+        // The moment of the place c is c x down.
+        wrenches.fixed_view_mut::<3, 3>(3, 1).copy_from(&-down.cross_matrix());
+        (wrenches.tr_mul(&(self.gram * wrenches)), wrenches.tr_mul(&target.product))
     }
 
     /// Sets the torques that a force at a point leaves over of a target; returns the squared norm of the target, and of
@@ -95,12 +84,12 @@ impl Frame {
         &self,
         point: &Vector3<f64>,
         force: &Vector3<f64>,
-        target: &[f64],
+        target: &LinkTarget,
         left: &mut [f64],
     ) -> (f64, f64) {
         let moment = point.cross(force);
         let mut squares = (0.0, 0.0);
-        for ((left, axis), target) in left.iter_mut().zip(&self.axes).zip(target) {
+        for ((left, axis), target) in left.iter_mut().zip(&self.axes).zip(&target.torque) {
             *left = target - (axis.linear.dot(force) + axis.angular.dot(&moment));
             squares.0 += target * target;
             squares.1 += *left * *left;
@@ -112,6 +101,7 @@ impl Frame {
     pub fn copy(&mut self, other: &Frame) {
         self.pose = other.pose;
         self.axes.copy_from_slice(&other.axes);
+        self.gram = other.gram;
     }
 }
 
@@ -129,7 +119,7 @@ impl Frames {
         let frame = |body: usize| {
             let chain = if body == WORLD { &[] } else { robot.chain(body) };
             let variables: Vec<usize> = chain.iter().flat_map(|&body| robot.velocity_range(body)).collect();
-            Frame { pose: Pose::identity(), axes: vec![still; variables.len()], variables }
+            Frame { pose: Pose::identity(), axes: vec![still; variables.len()], variables, gram: Matrix6::zeros() }
         };
         Frames { links: robot.links().iter().map(|link| frame(link.body)).collect(), wanted }
     }
@@ -141,12 +131,15 @@ impl Frames {
             frame.pose = kinematics.link_pose(robot, index);
             // From the reference origin of the kinematics to the link's.
             let arm = frame.pose.translation - kinematics.origin;
+            frame.gram = Matrix6::zeros();
             let mut axes = frame.axes.iter_mut();
             for_each_column(robot, kinematics, robot.links()[index].body, &arm, |k, column| {
                 let (linear, angular) = split(&column);
                 if let Some(axis) = axes.next() {
                     axis.linear = frame.pose.inverse_transform_vector(&(linear / deviation[k]));
                     axis.angular = frame.pose.inverse_transform_vector(&(angular / deviation[k]));
+                    let column = stack(&axis.linear, &axis.angular);
+                    frame.gram += column * column.transpose();
                 }
             });
         }

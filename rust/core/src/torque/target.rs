@@ -1,42 +1,58 @@
 //! A measured external torque, over its noise, as each link's joints feel it.
 
+use nalgebra::Vector6;
+
 use super::frames::Frames;
+
+/// What the joints that move one link feel.
+#[derive(Debug, Clone)]
+pub(crate) struct LinkTarget {
+    /// Torques over their noise, in the order of the frame's axes.
+    pub torque: Vec<f64>,
+    /// Product of these with the columns of the frame's axes.
+    pub product: Vector6<f64>,
+}
 
 /// Torques over their noise.
 #[derive(Debug, Clone)]
 pub(crate) struct Target {
-    /// By link of the robot: of the velocity variables that move it, in the order of its axes.
-    links: Vec<Vec<f64>>,
-    /// Squared norm of all of them.
+    /// By link of the robot.
+    links: Vec<LinkTarget>,
+    /// Squared norm of all torques.
     pub squared: f64,
 }
 
 impl Target {
     /// For these frames; all zero.
     pub fn new(frames: &Frames) -> Self {
-        Target { links: frames.links.iter().map(|frame| vec![0.0; frame.joints()]).collect(), squared: 0.0 }
+        let link = |joints| LinkTarget { torque: vec![0.0; joints], product: Vector6::zeros() };
+        Target { links: frames.links.iter().map(|frame| link(frame.joints())).collect(), squared: 0.0 }
     }
 
     /// Takes on torques with their standard deviations, both one a velocity variable.
     pub fn set(&mut self, frames: &Frames, torque: &[f64], deviation: &[f64]) {
         self.squared = torque.iter().zip(deviation).map(|(torque, noise)| (torque / noise).powi(2)).sum();
         for &link in &frames.wanted {
-            for (value, &k) in self.links[link].iter_mut().zip(frames.links[link].variables()) {
+            let (frame, LinkTarget { torque: own, product }) = (&frames.links[link], &mut self.links[link]);
+            *product = Vector6::zeros();
+            for (axis, (value, &k)) in own.iter_mut().zip(frame.variables()).enumerate() {
                 *value = torque[k] / deviation[k];
+                *product += frame.column(axis) * *value;
             }
         }
     }
 
     /// What the joints feel that move a link.
     #[inline]
-    pub fn on(&self, link: usize) -> &[f64] {
+    pub fn on(&self, link: usize) -> &LinkTarget {
         &self.links[link]
     }
 
     /// Takes on another one of the same frames.
     pub fn copy(&mut self, other: &Target, wanted: &[usize]) {
         for &link in wanted {
-            self.links[link].copy_from_slice(&other.links[link]);
+            self.links[link].torque.copy_from_slice(&other.links[link].torque);
+            self.links[link].product = other.links[link].product;
         }
         self.squared = other.squared;
     }
