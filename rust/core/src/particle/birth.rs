@@ -2,10 +2,13 @@
 
 use std::mem::size_of;
 
-use super::columns::Columns;
+use super::columns::Slice;
 use super::instant::Instant;
 use super::memory::space;
-use super::options::{FilterOptions, Likelihood};
+use super::motion::{put, signed};
+use super::options::{FilterOptions, Likelihood, Motion};
+use super::rejuvenation::tangent;
+use super::response::ResponseModel;
 use crate::error::{Error, Result};
 use crate::math::random::Stream;
 use crate::robot::Robot;
@@ -24,11 +27,12 @@ pub(super) const PLACE: usize = size_of::<(u32, SurfacePoint)>() + size_of::<Sur
 pub(super) struct Births {
     places: Vec<(u32, SurfacePoint)>,
     /// Mean distance between places [m].
-    pub spacing: f64,
+    spacing: f64,
     log_stiffness: [f64; 2],
     log_radius: [f64; 2],
     force: [f64; 2],
-    stiffness_variance: f64,
+    /// Whether a particle's force is drawn from what is believed of it.
+    sampled: bool,
 }
 
 impl Births {
@@ -64,59 +68,92 @@ impl Births {
             log_stiffness: options.stiffness_range.map(f64::ln),
             log_radius: options.radius_range.map(f64::ln),
             force: options.force_range,
-            stiffness_variance: match options.likelihood {
-                Likelihood::Gaussian => DOUBT * DOUBT,
-                Likelihood::Exponential => 0.0,
-            },
+            sampled: options.likelihood == Likelihood::Exponential,
         })
     }
 
-    /// Makes all particles anew, the first ones at the first places.
-    pub fn spread(&self, instant: &Instant, random: &Stream, particles: &mut Columns) {
-        let count = particles.len();
-        for k in 0..count {
-            // Every place once where there are as many; otherwise evenly among the links.
-            let place = (k as u128 * self.places.len() as u128 / count as u128) as usize;
-            self.make(instant, random, particles, k, place);
-        }
+    /// How many places there are.
+    pub fn places(&self) -> usize {
+        self.places.len()
+    }
+}
+
+/// The birth of particles at one instant.
+#[derive(Debug)]
+pub(super) struct Birth<'a> {
+    pub births: &'a Births,
+    pub robot: &'a Robot,
+    pub instant: &'a Instant,
+    pub response_model: ResponseModel,
+    pub motion: Motion,
+    pub random: Stream,
+}
+
+impl Birth<'_> {
+    /// Particle `number` of `count`, of which every place has as many as every other.
+    pub fn evenly(&self, particles: &mut Slice<'_>, k: usize, number: usize, count: usize) {
+        let place = (number as u128 * self.births.places() as u128 / count as u128) as usize;
+        self.bear(particles, k, number, place);
     }
 
-    /// Makes particle k anew, at a place chosen at random.
-    pub fn anywhere(&self, instant: &Instant, random: &Stream, particles: &mut Columns, k: usize) {
-        let place = (random.uniform(DRAWS * k as u64) * self.places.len() as f64) as usize;
-        self.make(instant, random, particles, k, place);
+    /// Particle `number`, at a place chosen at random.
+    pub fn anywhere(&self, particles: &mut Slice<'_>, k: usize, number: usize) {
+        let share = self.random.uniform(DRAWS * number as u64 + PLACE_DRAW);
+        self.bear(particles, k, number, (share * self.births.places() as f64) as usize);
     }
 
-    fn make(&self, instant: &Instant, random: &Stream, particles: &mut Columns, k: usize, place: usize) {
-        let Some((link, place)) = self.places.get(place) else { return };
-        let log_uniform = |[low, high]: [f64; 2], draw: u64| {
-            (low + (high - low) * random.uniform(DRAWS * k as u64 + draw)).exp()
+    /// Makes particle k: near a place, in touch with an obstacle, with the force that explains the measured torque best.
+    fn bear(&self, particles: &mut Slice<'_>, k: usize, number: usize, place: usize) {
+        let Births { places, spacing, log_stiffness, log_radius, sampled, .. } = self.births;
+        let Some((link, at)) = places.get(place) else { return };
+        let Some(surface) = self.robot.links()[*link as usize].surface.as_ref() else { return };
+        let first = DRAWS * number as u64;
+        let log_uniform = |[low, high]: &[f64; 2], draw: u64| {
+            (low + (high - low) * self.random.uniform(first + draw)).exp()
         };
-        let radius = log_uniform(self.log_radius, 1);
-        let stiffness = log_uniform(self.log_stiffness, 2);
+        let radius = log_uniform(log_radius, RADIUS_DRAW);
+        let stiffness = log_uniform(log_stiffness, STIFFNESS_DRAW);
+        let [along, beside] = self.random.normals(first + ASIDE_DRAW);
+        let aside = tangent(&at.normal, along * spacing, beside * spacing);
+        let centre = at.point + at.normal * radius + aside;
+        let (near, distance, normal) = if self.motion == Motion::Curvature {
+            let near = surface.closest_point_near(&centre, at.triangle);
+            let (distance, normal) = signed(&near, &centre);
+            (near, distance, normal)
+        } else {
+            let near = surface.closest_point_near(&(at.point + aside), at.triangle);
+            (near, radius, near.normal)
+        };
         particles.link[k] = *link;
-        particles.triangle[k] = place.triangle;
-        particles.point[k] = place.point;
-        particles.normal[k] = place.normal;
-        particles.centre[k] =
-            instant.pose(*link as usize).transform_point(&(place.point + place.normal * radius));
-        particles.distance[k] = radius;
-        particles.force[k] = self.force[0];
-        particles.stiffness[k] = stiffness;
-        particles.force_variance[k] = 0.0;
-        particles.cross_variance[k] = 0.0;
-        particles.stiffness_variance[k] = self.stiffness_variance * stiffness * stiffness;
+        particles.centre[k] = self.instant.pose(*link as usize).transform_point(&centre);
+        particles.distance[k] = distance;
         particles.log_weight[k] = 0.0;
-        particles.spread[k] = self.spacing;
-        particles.fresh[k] = true;
+        particles.stiffness[k] = stiffness;
+        particles.cross_variance[k] = 0.0;
+        put(particles, k, &near, normal);
+        // First without friction, whose limit is the force's.
+        particles.force[k] = 0.0;
+        let bare = self.response_model.apply(self.instant, particles, k);
+        let force = self.births.force(bare.gain, bare.product);
+        let deviation = DOUBT * force;
+        if *sampled {
+            let [draw, _] = self.random.normals(first + FORCE_DRAW);
+            particles.force[k] = force + draw * deviation;
+            (particles.force_variance[k], particles.stiffness_variance[k]) = (0.0, 0.0);
+        } else {
+            particles.force[k] = force;
+            particles.force_variance[k] = deviation.powi(2);
+            particles.stiffness_variance[k] = (DOUBT * stiffness).powi(2);
+        }
+        self.response_model.apply(self.instant, particles, k);
     }
+}
 
-    /// The force that explains the measured torque best, within the range, and its variance.
-    #[inline]
-    pub fn force(&self, gain: f64, product: f64) -> (f64, f64) {
+impl Births {
+    /// The force that explains the measured torque best, within the range.
+    fn force(&self, gain: f64, product: f64) -> f64 {
         let best = if gain > 0.0 { product / gain } else { 0.0 };
-        let force = best.clamp(self.force[0], self.force[1]);
-        (force, (DOUBT * force).powi(2))
+        best.clamp(self.force[0], self.force[1])
     }
 }
 
@@ -129,5 +166,10 @@ fn hidden(robot: &Robot, wanted: &[usize], options: &FilterOptions) -> Error {
     ))
 }
 
-/// Random numbers a birth uses at most.
-const DRAWS: u64 = 4;
+/// Random numbers that a birth uses at most, and which for what; normal ones take two.
+const DRAWS: u64 = 8;
+const PLACE_DRAW: u64 = 0;
+const RADIUS_DRAW: u64 = 1;
+const STIFFNESS_DRAW: u64 = 2;
+const ASIDE_DRAW: u64 = 4;
+const FORCE_DRAW: u64 = 6;

@@ -88,10 +88,6 @@ columns! {
     measured: f64 = 0.0,
     /// What the freedom of its friction costs in log-likelihood.
     penalty: f64 = 0.0,
-    /// How far the particle is to be moved along the surface at random, a standard deviation; zero once it was [m].
-    spread: f64 = 0.0,
-    /// Drawn anew from the whole surface, not copied: never weighed yet.
-    fresh: bool = true,
 }
 
 impl Columns {

@@ -2,7 +2,6 @@
 
 use nalgebra::Vector3;
 
-use super::birth::Births;
 use super::columns::Slice;
 use super::instant::Instant;
 use super::options::Motion;
@@ -37,14 +36,7 @@ pub(super) struct Move {
 
 impl Move {
     /// Moves particles, of which the first has the number `start`, to the present pose.
-    pub fn apply(
-        &self,
-        robot: &Robot,
-        instant: &Instant,
-        births: &Births,
-        start: usize,
-        particles: &mut Slice<'_>,
-    ) {
+    pub fn apply(&self, robot: &Robot, instant: &Instant, start: usize, particles: &mut Slice<'_>) {
         for k in 0..particles.len() {
             let Some(surface) = robot.links()[particles.link[k] as usize].surface.as_ref() else { continue };
             let number = (start + k) as u64;
@@ -52,13 +44,6 @@ impl Move {
                 Motion::Curvature => self.roll(surface, instant, number, particles, k),
                 Motion::FixedOnLink => self.stay_on_link(surface, number, particles, k),
                 Motion::FixedInWorld => self.stay_in_world(surface, instant, number, particles, k),
-            }
-            if particles.fresh[k] {
-                particles.fresh[k] = false;
-                // First without friction, whose limit is the force's.
-                particles.force[k] = 0.0;
-                let bare = self.response_model.apply(instant, particles, k);
-                (particles.force[k], particles.force_variance[k]) = births.force(bare.gain, bare.product);
             }
             self.response_model.apply(instant, particles, k);
             if self.sampled {
@@ -109,10 +94,7 @@ impl Move {
         let (distance, normal) = signed(&near, &local);
         let change = particles.distance[k] - distance;
         particles.distance[k] = distance;
-        place(particles, k, &near, normal);
-        if particles.fresh[k] {
-            return; // its force is yet to be set
-        }
+        put(particles, k, &near, normal);
         particles.force[k] += change * particles.stiffness[k];
         let [cross, stiffness] = [particles.cross_variance[k], particles.stiffness_variance[k]];
         particles.force_variance[k] += 2.0 * change * cross
@@ -135,7 +117,7 @@ impl Move {
         let fixed = instant.before(link).transform_point(&particles.point[k]);
         let near = surface
             .closest_point_near(&instant.pose(link).inverse_transform_point(&fixed), particles.triangle[k]);
-        place(particles, k, &near, near.normal);
+        put(particles, k, &near, near.normal);
         self.stay_on_link(surface, number, particles, k);
     }
 
@@ -165,7 +147,7 @@ pub(super) fn signed(near: &ClosestPoint, local: &Vector3<f64>) -> (f64, Vector3
 }
 
 /// Puts a particle at a point of its link's surface.
-pub(super) fn place(particles: &mut Slice<'_>, k: usize, near: &ClosestPoint, normal: Vector3<f64>) {
+pub(super) fn put(particles: &mut Slice<'_>, k: usize, near: &ClosestPoint, normal: Vector3<f64>) {
     particles.point[k] = near.point;
     particles.normal[k] = normal;
     particles.triangle[k] = near.triangle;

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::columns::Slice;
 use super::instant::Instant;
-use super::motion::{place, signed};
+use super::motion::{put, signed};
 use super::options::Motion;
 use super::response::ResponseModel;
 use crate::math::random::Stream;
@@ -18,6 +18,10 @@ const DRAWS: u64 = 4;
 #[derive(Debug, Clone)]
 pub(super) struct Rejuvenation {
     pub motion: Motion,
+    /// How far they are moved, a standard deviation [m].
+    pub apart: f64,
+    /// Whether not only copies are moved.
+    pub all: bool,
     pub response_model: ResponseModel,
     /// Whether force and stiffness go along, so that the torque stays.
     pub keep_torque: bool,
@@ -28,30 +32,37 @@ pub(super) struct Rejuvenation {
 }
 
 impl Rejuvenation {
-    /// Moves each particle by its `spread`, at the present pose; the first one has the number `start`.
-    pub fn apply(&self, robot: &Robot, instant: &Instant, start: usize, particles: &mut Slice<'_>) {
+    /// Moves those that `parents` says are copies (or all), at the present pose; the first one has the number `start`.
+    pub fn apply(
+        &self,
+        robot: &Robot,
+        instant: &Instant,
+        parents: &[u32],
+        start: usize,
+        particles: &mut Slice<'_>,
+    ) {
         for k in 0..particles.len() {
-            let spread = particles.spread[k];
+            let number = start + k;
+            let copy = number > 0 && parents[number] == parents[number - 1];
             let Some(surface) = robot.links()[particles.link[k] as usize].surface.as_ref() else { continue };
-            if spread <= 0.0 {
+            if !(copy || self.all) {
                 continue;
             }
-            particles.spread[k] = 0.0;
             let pose = instant.pose(particles.link[k] as usize);
-            let [along, beside] = self.random.normals((start + k) as u64 * DRAWS);
-            let aside = tangent(&particles.normal[k], along * spread, beside * spread);
+            let [along, beside] = self.random.normals(number as u64 * DRAWS);
+            let aside = tangent(&particles.normal[k], along * self.apart, beside * self.apart);
             if self.motion == Motion::Curvature {
                 let local = pose.inverse_transform_point(&particles.centre[k]) + aside;
                 let near = surface.closest_point_near(&local, particles.triangle[k]);
                 let (distance, normal) = signed(&near, &local);
                 particles.centre[k] = pose.transform_point(&local);
                 particles.distance[k] = distance;
-                place(particles, k, &near, normal);
+                put(particles, k, &near, normal);
             } else {
                 let near = surface.closest_point_near(&(particles.point[k] + aside), particles.triangle[k]);
-                place(particles, k, &near, near.normal);
+                put(particles, k, &near, near.normal);
             }
-            if particles.fresh[k] || !self.keep_torque {
+            if !self.keep_torque {
                 continue;
             }
             let (gain, product) = (particles.gain[k], particles.product[k]);
@@ -70,7 +81,7 @@ impl Rejuvenation {
 }
 
 /// A vector across `normal`.
-fn tangent(normal: &Vector3<f64>, along: f64, beside: f64) -> Vector3<f64> {
+pub(super) fn tangent(normal: &Vector3<f64>, along: f64, beside: f64) -> Vector3<f64> {
     let first = across(normal);
     first * along + normal.cross(&first) * beside
 }

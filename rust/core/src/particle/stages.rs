@@ -32,7 +32,7 @@ impl Stages {
     pub fn motion(&mut self, q: &[f64], tau_ext: &[f64]) -> Result<()> {
         self.0.read(q, tau_ext)?;
         let noise = self.noise();
-        self.0.predict(&noise);
+        self.0.predict(&noise, self.0.particles.len());
         Ok(())
     }
 

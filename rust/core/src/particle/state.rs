@@ -161,7 +161,10 @@ impl FilterState {
     /// Lets the particles take in a contact's torque.
     fn follow(&mut self, mut event: Event, moved: f64) {
         let noise = Noise::at(&self.options, self.age, moved);
-        self.predict(&noise);
+        // Particles that were born in this update are where the robot is.
+        if self.age > 0 {
+            self.predict(&noise, self.particles.len());
+        }
         let mut effective = self.weigh(moved, &noise);
         let due = self.age >= self.next_reinitialisation && noise.sharpness.is_none();
         if due && self.left_over().is_much(REINITIALISE) {
@@ -208,16 +211,14 @@ impl FilterState {
 
     /// Begins the search anew.
     fn spread(&mut self) {
-        self.instant.stand();
-        let random = self.stream();
-        self.births.spread(&self.instant, &random, &mut self.particles);
-        self.rejuvenate();
         self.adaptation = Adaptation::default();
+        self.bear(0, true);
         self.age = 0;
         self.next_reinitialisation = 1;
     }
 
-    pub fn predict(&mut self, noise: &Noise) {
+    /// Moves the first particles with the robot.
+    pub fn predict(&mut self, noise: &Noise, count: usize) {
         let motion = Move {
             motion: self.options.motion,
             response_model: self.response_model(),
@@ -229,10 +230,9 @@ impl FilterState {
             random: self.stream(),
             step: self.step,
         };
-        let Self { robot, instant, births, particles, options, stop, .. } = self;
-        let work =
-            |start: usize, mut slice: Slice<'_>| motion.apply(robot, instant, births, start, &mut slice);
-        Course { threads: options.threads, stop }.for_each(particles.slice(), 0, &work);
+        let Self { robot, instant, particles, options, stop, .. } = self;
+        let work = |start: usize, mut slice: Slice<'_>| motion.apply(robot, instant, start, &mut slice);
+        Course { threads: options.threads, stop }.for_each(particles.slice().split_at(count).0, 0, &work);
     }
 
     /// Weighs the particles; returns how many are effective.

@@ -4,7 +4,7 @@ use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 use super::force_model::{directions, ForceModel};
 use super::frames::Frame;
-use super::target::LinkTarget;
+use super::link_target::LinkTarget;
 
 /// The torques of a unit of normal force against a target, each joint over its noise, with the force across the normal
 /// integrated out.

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Matrix4, Matrix6, Matrix6x3, Matrix6x4, Vector3, Vector4, Vector6};
 
-use super::target::LinkTarget;
+use super::link_target::LinkTarget;
 use crate::robot::jacobian::for_each_column;
 use crate::robot::{Kinematics, Robot, WORLD};
 use crate::spatial::vector::{split, stack};
@@ -119,7 +119,12 @@ impl Frames {
         let frame = |body: usize| {
             let chain = if body == WORLD { &[] } else { robot.chain(body) };
             let variables: Vec<usize> = chain.iter().flat_map(|&body| robot.velocity_range(body)).collect();
-            Frame { pose: Pose::identity(), axes: vec![still; variables.len()], variables, gram: Matrix6::zeros() }
+            Frame {
+                pose: Pose::identity(),
+                axes: vec![still; variables.len()],
+                variables,
+                gram: Matrix6::zeros(),
+            }
         };
         Frames { links: robot.links().iter().map(|link| frame(link.body)).collect(), wanted }
     }

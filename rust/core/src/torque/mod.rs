@@ -3,6 +3,7 @@
 mod fit;
 mod force_model;
 mod frames;
+mod link_target;
 mod target;
 
 pub(crate) use fit::{BestForce, NormalFit};

@@ -3,15 +3,7 @@
 use nalgebra::Vector6;
 
 use super::frames::Frames;
-
-/// What the joints that move one link feel.
-#[derive(Debug, Clone)]
-pub(crate) struct LinkTarget {
-    /// Torques over their noise, in the order of the frame's axes.
-    pub torque: Vec<f64>,
-    /// Product of these with the columns of the frame's axes.
-    pub product: Vector6<f64>,
-}
+use super::link_target::LinkTarget;
 
 /// Torques over their noise.
 #[derive(Debug, Clone)]

@@ -1,6 +1,7 @@
 //! Drawing particles anew, by their weights and from the whole surface.
 
 use super::FilterState;
+use crate::particle::birth::Birth;
 use crate::particle::columns::Slice;
 use crate::particle::estimate::Event;
 use crate::particle::options::{Likelihood, Motion};
@@ -22,7 +23,7 @@ impl FilterState {
         let kept = self.resample(noise, moved, REINITIALISED);
         self.instant.stand();
         self.adaptation.begin();
-        self.predict(&Noise::none());
+        self.predict(&Noise::none(), kept);
         let effective = self.weigh(0.0, &Noise::none());
         let found: f64 = self.weights[kept..count].iter().sum();
         (effective, if found > 0.5 { Event::Changed } else { event })
@@ -43,31 +44,47 @@ impl FilterState {
             let slip = if self.options.motion == Motion::Curvature { 0.0 } else { SLIP * moved };
             self.adaptation.apart(self.modes.spread).max(slip)
         });
-        for k in 0..kept {
-            let copy = k > 0 && self.parents[k] == self.parents[k - 1];
-            self.particles.spread[k] = if copy || noise.point.is_some() { apart } else { 0.0 };
-            self.particles.log_weight[k] = 0.0;
-        }
-        let random = self.stream();
-        for k in kept..count {
-            self.births.anywhere(&self.instant, &random, &mut self.particles, k);
-        }
+        self.particles.log_weight[..kept].fill(0.0);
+        self.rejuvenate(kept, apart, noise.point.is_some());
+        self.bear(kept, false);
         self.weights.fill(1.0 / count as f64);
-        self.rejuvenate();
         kept
     }
 
-    pub(super) fn rejuvenate(&mut self) {
+    /// Moves copies among the first ones (or all of these) apart along the surface [m].
+    fn rejuvenate(&mut self, kept: usize, apart: f64, all: bool) {
         let apart = Rejuvenation {
             motion: self.options.motion,
+            apart,
+            all,
             response_model: self.response_model(),
             keep_torque: self.options.likelihood == Likelihood::Gaussian,
             stiffness_range: self.options.stiffness_range,
             most_force: self.options.force_range[1],
             random: self.stream(),
         };
-        let Self { robot, instant, particles, options, stop, .. } = self;
-        let work = |start: usize, mut slice: Slice<'_>| apart.apply(robot, instant, start, &mut slice);
-        Course { threads: options.threads, stop }.for_each(particles.slice(), 0, &work);
+        let Self { robot, instant, particles, parents, options, stop, .. } = self;
+        let work = |start: usize, mut slice: Slice<'_>| {
+            apart.apply(robot, instant, parents, start, &mut slice);
+        };
+        Course { threads: options.threads, stop }.for_each(particles.slice().split_at(kept).0, 0, &work);
+    }
+
+    /// Makes all particles behind the first ones anew, from the whole surface: evenly, or at random.
+    pub(super) fn bear(&mut self, kept: usize, evenly: bool) {
+        let (response_model, random) = (self.response_model(), self.stream());
+        let Self { robot, instant, births, particles, options, stop, .. } = self;
+        let count = particles.len();
+        let birth = Birth { births, robot, instant, response_model, motion: options.motion, random };
+        let work = |start: usize, mut slice: Slice<'_>| {
+            for k in 0..slice.len() {
+                if evenly {
+                    birth.evenly(&mut slice, k, start + k, count);
+                } else {
+                    birth.anywhere(&mut slice, k, start + k);
+                }
+            }
+        };
+        Course { threads: options.threads, stop }.for_each(particles.slice().split_at(kept).1, kept, &work);
     }
 }
