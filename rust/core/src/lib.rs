@@ -3,7 +3,6 @@
 //! [`monitor::ContactMonitor`] is the place to start: one call a control tick. [`robot::Robot`] comes from a URDF file
 //! or a description; all vectors are in its joints' order, in SI units, and vectors of the world in its axes.
 #![warn(missing_docs)]
-#![allow(rustdoc::broken_intra_doc_links)] // units such as [m] look like links
 
 mod detection;
 pub mod error;

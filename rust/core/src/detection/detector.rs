@@ -29,8 +29,8 @@ pub(crate) struct Detector {
 
 impl Detector {
     /// `threshold` per velocity variable, or one for all [Nm; N for prismatic joints and a base's linear part], and on the
-    /// sensors' wrenches: one number for all [N, Nm], six for each sensor, or six times the number of sensors;
-    /// `hold_time` [s].
+    /// sensors' wrenches: one number for all (N, Nm), six for each sensor, or six times the number of sensors;
+    /// `hold_time` (s).
     ///
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) names the argument.
@@ -57,7 +57,7 @@ impl Detector {
         })
     }
 
-    /// One tick of `dt` [s] with the external torque `(nv,)`, finite, and the external wrenches that the sensors see, NaN
+    /// One tick of `dt` (s) with the external torque `(nv,)`, finite, and the external wrenches that the sensors see, NaN
     /// where one is left out; none without sensors. A sensor over its threshold says that the contact is behind it, one
     /// under it that it is not.
     pub fn update(&mut self, external_torque: &[f64], wrenches: &[Vector6<f64>], dt: f64) {

@@ -19,13 +19,13 @@ pub(crate) struct Gate {
     /// What was on goes off below this share of its threshold.
     release: f64,
     hold_time: f64,
-    /// Time left until a signal goes off; negative where it is off [s].
+    /// Time left until a signal goes off; negative where it is off (s).
     remaining: Vec<f64>,
     on: bool,
 }
 
 impl Gate {
-    /// Of checked thresholds; signals stay on for `hold_time` [s] after they were last over.
+    /// Of checked thresholds; signals stay on for `hold_time` (s) after they were last over.
     pub fn new(threshold: Vec<f64>, hold_time: f64) -> Self {
         Gate { remaining: vec![-1.0; threshold.len()], threshold, release: 1.0, hold_time, on: false }
     }
@@ -35,7 +35,7 @@ impl Gate {
         Gate { release, ..Gate::new(threshold, 0.0) }
     }
 
-    /// Takes in the signals of a step of `dt` [s]; returns whether any is on.
+    /// Takes in the signals of a step of `dt` (s); returns whether any is on.
     pub fn update(&mut self, signals: &[f64], dt: f64) -> bool {
         let share = if self.on { self.release } else { 1.0 };
         self.on = false;
@@ -73,7 +73,7 @@ impl Gate {
     }
 }
 
-/// A hold time [s] that can be used.
+/// A hold time (s) that can be used.
 pub(crate) fn check_hold_time(hold_time: f64) -> Result<()> {
     if hold_time.is_finite() && hold_time >= 0.0 {
         return Ok(());

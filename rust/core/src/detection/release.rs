@@ -5,7 +5,7 @@
 //! is clamped after an impact, stands still as well, and no torque tells the two apart. So only what hysteresis leaves is
 //! taken for a remainder, and never so much that a force worth detecting could hide behind it.
 
-/// How long the torque must have stood still [s]; a hand's push does not.
+/// How long the torque must have stood still (s); a hand's push does not.
 const STILL_TIME: f64 = 0.1;
 /// And in how many samples at least, for slow or interrupted clocks.
 const FEWEST_SAMPLES: u64 = 5;
@@ -23,13 +23,13 @@ const LARGEST_REMAINDER: f64 = 1.0;
 /// What the release rule needs to know of a robot, one number a joint.
 #[derive(Debug, Clone)]
 pub(crate) struct ReleaseRule {
-    /// A torque that stands still for this long becomes the bias at any level [s].
+    /// A torque that stands still for this long becomes the bias at any level (s).
     pub settle_time: Option<f64>,
     /// Share of its load that a joint may keep.
     pub hysteresis: Vec<f64>,
-    /// [Nm, N].
+    /// (Nm, N).
     pub threshold: Vec<f64>,
-    /// Whether a joint's torque is a force [N]: only torques of one unit are summed.
+    /// Whether a joint's torque is a force (N): only torques of one unit are summed.
     pub is_force: Vec<bool>,
 }
 
@@ -37,7 +37,7 @@ pub(crate) struct ReleaseRule {
 #[derive(Debug, Clone)]
 pub(crate) struct ReleaseDetector {
     rule: ReleaseRule,
-    /// Greatest norm of a remainder's torques [Nm] and of its forces [N].
+    /// Greatest norm of a remainder's torques (Nm) and of its forces (N).
     limit: [f64; 2],
     /// Mean since the torque stands still.
     mean: Vec<f64>,
@@ -45,7 +45,7 @@ pub(crate) struct ReleaseDetector {
     still_time: f64,
     /// Each joint's greatest torque free of bias in this contact, with its sign.
     peak: Vec<f64>,
-    /// Greatest norm of the torques [Nm] and of the forces [N].
+    /// Greatest norm of the torques (Nm) and of the forces (N).
     greatest: [f64; 2],
 }
 
@@ -65,7 +65,7 @@ impl ReleaseDetector {
         }
     }
 
-    /// A step of `dt` [s] in contact with a torque still including the bias; true when the contact is over and
+    /// A step of `dt` (s) in contact with a torque still including the bias; true when the contact is over and
     /// [`ReleaseDetector::remainder`] is the new bias.
     pub fn update(&mut self, torque: &[f64], bias: &[f64], dt: f64) -> bool {
         self.find_peaks(torque, bias);
@@ -141,7 +141,7 @@ impl ReleaseDetector {
     }
 }
 
-/// Norm of the torques [Nm], and of the forces [N].
+/// Norm of the torques (Nm), and of the forces (N).
 fn norms(values: impl Iterator<Item = f64>, is_force: &[bool]) -> [f64; 2] {
     let mut squares = [0.0; 2];
     values.zip(is_force).for_each(|(value, force)| squares[usize::from(*force)] += value * value);

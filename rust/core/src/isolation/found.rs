@@ -20,7 +20,7 @@ pub(super) struct Scene<'a> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Entry {
     pub hit: Candidate,
-    /// Distance of the farthest other place where it enters the same body, zero if there is none [m].
+    /// Distance of the farthest other place where it enters the same body, zero if there is none (m).
     pub apart: f64,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct Found {
     pub hit: Candidate,
     /// Of all torques, with the point known; else that of the wrench.
     pub force: Vector3<f64>,
-    /// Distance of the farthest other place where the line enters the body, zero if there is none [m].
+    /// Distance of the farthest other place where the line enters the body, zero if there is none (m).
     pub apart: f64,
 }
 

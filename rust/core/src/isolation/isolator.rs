@@ -153,7 +153,7 @@ impl ContactIsolator {
     }
 
     /// The same with the external wrench that each sensor sees, as [`crate::sensor::LoadCompensator`] gives it: (force,
-    /// moment) at the sensor's origin, world axes [N, Nm]. A wrench with a NaN leaves its sensor out.
+    /// moment) at the sensor's origin, world axes (N, Nm). A wrench with a NaN leaves its sensor out.
     ///
     /// # Errors
     /// [`Error::Input`] names the argument.

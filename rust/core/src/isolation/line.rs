@@ -70,7 +70,7 @@ impl LineCast {
     }
 }
 
-/// Nothing that pushes fits into a gap between two links that is narrower than this [m].
+/// Nothing that pushes fits into a gap between two links that is narrower than this (m).
 const GAP: f64 = 3e-3;
 
 /// Whether an entry into a link lies inside another link that the same line crosses, or right behind it: no contact can
@@ -85,7 +85,7 @@ pub(super) fn is_covered(hits: &[Candidate], entry: &Candidate) -> bool {
     })
 }
 
-/// Distance of the farthest place that a line enters and that is not covered from the first, zero if there is none [m].
+/// Distance of the farthest place that a line enters and that is not covered from the first, zero if there is none (m).
 pub(super) fn farthest_entry(hits: &[Candidate], first: &Candidate) -> f64 {
     let open = hits.iter().filter(|hit| hit.pushing && *hit != first && !is_covered(hits, hit));
     open.map(|hit| (hit.point - first.point).norm()).fold(0.0, f64::max)

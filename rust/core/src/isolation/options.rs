@@ -3,13 +3,13 @@
 use crate::error::{Error, Result};
 use crate::sensor::ForceTorqueSensor;
 
-/// Default of [`IsolatorOptions::locate_within`]: about the width of a hand's contact [m].
+/// Default of [`IsolatorOptions::locate_within`]: about the width of a hand's contact (m).
 const LOCATE_WITHIN: f64 = 0.05;
 
 /// Settings of a [`ContactIsolator`](super::ContactIsolator).
 #[derive(Debug, Clone)]
 pub struct IsolatorOptions {
-    /// Per velocity variable, or one for all [Nm, N]. Also the scale of the torques' errors.
+    /// Per velocity variable, or one for all (Nm, N). Also the scale of the torques' errors.
     pub torque_threshold: Vec<f64>,
     /// Contacts reported at most.
     pub max_contacts: usize,
@@ -17,11 +17,11 @@ pub struct IsolatorOptions {
     pub pushing: bool,
     /// Force/torque sensors, in the order of the wrenches.
     pub sensors: Vec<ForceTorqueSensor>,
-    /// On the sensors' wrenches: one number, 6 for every sensor, or 6 times the number of sensors [N, Nm].
+    /// On the sensors' wrenches: one number, 6 for every sensor, or 6 times the number of sensors (N, Nm).
     pub wrench_threshold: Vec<f64>,
     /// Names of the sensors whose contacts are meant and not reported (eq. 20).
     pub wanted_contacts: Vec<String>,
-    /// A contact is located if 90 % of the places that explain the torques are within this distance of its point [m].
+    /// A contact is located if 90 % of the places that explain the torques are within this distance of its point (m).
     pub locate_within: f64,
 }
 

@@ -12,13 +12,13 @@ use crate::robot::jacobian::for_each_column;
 use crate::robot::{Kinematics, Robot};
 use crate::spatial::vector::stack;
 
-/// One of several contacts is located if its point's standard deviation is less [m].
+/// One of several contacts is located if its point's standard deviation is less (m).
 const SHARP: f64 = 0.01;
 /// Unknowns of a force on a line of action.
 const LINE_UNKNOWNS: usize = 5;
 /// Root mean square of the distance from one of two equally likely places, as a share of the distance between them.
 const EQUALLY_LIKELY: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// Solutions whose points are nearer than this agree [m].
+/// Solutions whose points are nearer than this agree (m).
 const SAME_POINT: f64 = 0.005;
 
 impl ContactIsolator {
@@ -133,7 +133,7 @@ impl ContactIsolator {
         self.region.feels.iter().filter(|feels| **feels).count()
     }
 
-    /// Standard deviation of the point [m]: of the line across the surface, or as far as lines displaced by twice
+    /// Standard deviation of the point (m): of the line across the surface, or as far as lines displaced by twice
     /// theirs hit elsewhere, past an edge or on another link.
     fn spread(&mut self, kinematics: &Kinematics, wrench: &WrenchEstimate, hit: &Candidate) -> f64 {
         let at = hit.point - kinematics.origin;

@@ -9,13 +9,13 @@ use nalgebra::{Vector3, Vector6};
 pub struct Candidate {
     /// Index into [`crate::robot::Robot::links`].
     pub link: usize,
-    /// World frame [m].
+    /// World frame (m).
     pub point: Vector3<f64>,
     /// Outward normal, world frame.
     pub normal: Vector3<f64>,
     /// Whether the force enters the surface here.
     pub pushing: bool,
-    /// Along the force, from the point of the line nearest to the base [m].
+    /// Along the force, from the point of the line nearest to the base (m).
     pub distance: f64,
 }
 
@@ -24,22 +24,22 @@ pub struct Candidate {
 pub struct Contact {
     /// Index into [`crate::robot::Robot::links`].
     pub link: usize,
-    /// Point of contact, world frame [m].
+    /// Point of contact, world frame (m).
     pub point: Vector3<f64>,
-    /// The same in the link frame [m].
+    /// The same in the link frame (m).
     pub point_local: Vector3<f64>,
-    /// Force on the robot, world frame [N].
+    /// Force on the robot, world frame (N).
     pub force: Vector3<f64>,
     /// Outward surface normal at the point, world frame.
     pub normal: Vector3<f64>,
-    /// Wrench (force, moment) on the robot at the link's origin, world axes [N, Nm].
+    /// Wrench (force, moment) on the robot at the link's origin, world axes (N, Nm).
     pub wrench: Vector6<f64>,
     /// The sensor that saw it, an index into the sensors given; none: the joint torques.
     pub source: Option<usize>,
     /// Whether 90 % of the places that explain the torques lie within [`super::IsolatorOptions::locate_within`] of the
     /// point. If not, the link may be known, the point is not.
     pub located: bool,
-    /// Standard deviation of the point [m]. The standard deviation of a torque is taken as a third of its threshold, and
+    /// Standard deviation of the point (m). The standard deviation of a torque is taken as a third of its threshold, and
     /// as more where the torques contradict one force. Other places that explain the torques as well are included.
     pub point_std: f64,
     /// Whether redundant torques agree with the contacts reported. Where nothing is redundant (as many torques as

@@ -14,7 +14,7 @@ const UNLIKELY: f64 = 9.21;
 /// What else the torques allow.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rivals {
-    /// Distance of the farthest place that is not unlikely from the one found [m].
+    /// Distance of the farthest place that is not unlikely from the one found (m).
     pub distance: f64,
     /// Whether a force on a body whose contact points the torques do not determine is not unlikely either.
     pub open: bool,
@@ -100,7 +100,7 @@ impl ContactIsolator {
     }
 
     /// Adds the places where the line of action, or one displaced by two standard deviations, enters the body's links
-    /// to the candidates; the distance of the farthest from `hit` [m], none where no line does.
+    /// to the candidates; the distance of the farthest from `hit` (m), none where no line does.
     fn add_entries(
         &mut self,
         kinematics: &Kinematics,

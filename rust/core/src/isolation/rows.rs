@@ -7,7 +7,7 @@ use super::wrench::{WrenchEstimate, ORIGIN};
 use crate::robot::jacobian::jacobian_column;
 use crate::robot::{Kinematics, Robot};
 
-/// Balances moments against forces in rank decisions: a typical lever arm [m].
+/// Balances moments against forces in rank decisions: a typical lever arm (m).
 pub(super) const LEVER: f64 = 0.3;
 /// Sensors and models err by a part of what they measure, too: three standard deviations, as the threshold is.
 pub(super) const TORQUE_SHARE: f64 = 0.03;

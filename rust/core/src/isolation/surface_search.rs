@@ -28,7 +28,7 @@ const OBLIQUE: f64 = 1.0;
 const SIZE: i32 = 2;
 /// Pairs that cost so much more than the best have no weight.
 const UNLIKELY: f64 = 12.0;
-/// Exact solutions are sought from likely pairs within about this distance of the mean [m].
+/// Exact solutions are sought from likely pairs within about this distance of the mean (m).
 const REACH: f64 = 0.05;
 /// Pairs whose missing moment points so far along their arm are not looked at [variances].
 const WORTH: f64 = 2.0;

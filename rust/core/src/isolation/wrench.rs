@@ -118,7 +118,7 @@ impl WrenchEstimate {
         self.root.fixed_rows::<3>(0).norm() / self.force.norm() * self.torque_deviation()
     }
 
-    /// Two displacements of the line at a point of it, across the line and each other, by one standard deviation [m].
+    /// Two displacements of the line at a point of it, across the line and each other, by one standard deviation (m).
     pub fn displacements(&self, point: &Vector3<f64>) -> [Vector3<f64>; 2] {
         let lever = point.cross_matrix();
         let across = self.force.cross_matrix() / self.force.norm_squared();

@@ -12,20 +12,20 @@ const FEWEST_BLOCKS: usize = 3;
 #[derive(Debug, Clone)]
 pub(super) struct BiasTracker {
     time_constant: f64,
-    /// Greatest bias of each joint [Nm, N].
+    /// Greatest bias of each joint (Nm, N).
     limit: Vec<f64>,
     bias: Vec<f64>,
     free_time: f64,
     /// Means of the finished blocks: [`BLOCKS`] for each joint in turn.
     means: Vec<f64>,
     finished: usize,
-    /// Integral over the block that is not finished [Nm s].
+    /// Integral over the block that is not finished (Nm s).
     integral: Vec<f64>,
     block_time: f64,
 }
 
 impl BiasTracker {
-    /// A tracker with a time constant [s] and the greatest bias of each joint [Nm, N].
+    /// A tracker with a time constant (s) and the greatest bias of each joint (Nm, N).
     ///
     /// # Errors
     /// [`Error::Input`] where the time constant is not positive and finite.
@@ -54,7 +54,7 @@ impl BiasTracker {
         self.finished == BLOCKS || (self.finished >= FEWEST_BLOCKS && self.free_time >= self.time_constant)
     }
 
-    /// Takes in a torque `(nv,)` of a step of `dt` [s] without contact: a median at first, then a low-pass.
+    /// Takes in a torque `(nv,)` of a step of `dt` (s) without contact: a median at first, then a low-pass.
     pub fn follow(&mut self, torque: &[f64], dt: f64) {
         if !self.ready() {
             return self.learn(torque, dt);

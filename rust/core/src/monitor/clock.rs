@@ -5,7 +5,7 @@ use crate::observer::{check_time_step, Step, LONGEST_STEP};
 /// A step is bridged, torques and momentum taken as changing evenly over it, up to so many nominal steps, or
 /// [`BRIDGE_TIME`] if that is longer.
 const BRIDGED_STEPS: f64 = 5.0;
-/// An arm in fast motion (2 rad/s, 1 Hz) is still known to a few tenths of a Nm over a step of this length [s].
+/// An arm in fast motion (2 rad/s, 1 Hz) is still known to a few tenths of a Nm over a step of this length (s).
 const BRIDGE_TIME: f64 = 0.05;
 
 /// Nominal steps that are counted at most, so that counting one more cannot overflow.
@@ -14,15 +14,15 @@ const MOST_MISSED: u64 = u64::MAX / 2;
 /// Counts the time from one accepted sample to the next.
 #[derive(Debug, Clone)]
 pub(super) struct SampleClock {
-    /// Nominal step [s].
+    /// Nominal step (s).
     dt: f64,
     started: bool,
-    /// Between the last accepted sample and the last refused one: a measured time [s], and nominal steps after it.
+    /// Between the last accepted sample and the last refused one: a measured time (s), and nominal steps after it.
     measured_gap: f64,
     missed: u64,
     /// Nominal steps from the first accepted sample to the last.
     ticks: u64,
-    /// Of the steps with a length of their own [s].
+    /// Of the steps with a length of their own (s).
     measured: f64,
 }
 
@@ -31,7 +31,7 @@ impl SampleClock {
         Self { dt, started: false, measured_gap: 0.0, missed: 0, ticks: 0, measured: 0.0 }
     }
 
-    /// The step that ends with the next sample; `dt` [s], where measured, is the time since the last accepted one.
+    /// The step that ends with the next sample; `dt` (s), where measured, is the time since the last accepted one.
     pub fn step(&self, dt: Option<f64>) -> Step {
         let length = match dt {
             Some(dt) => dt,
@@ -74,12 +74,12 @@ impl SampleClock {
         self.started
     }
 
-    /// From the first accepted sample to the last [s].
+    /// From the first accepted sample to the last (s).
     pub fn time(&self) -> f64 {
         self.ticks as f64 * self.dt + self.measured
     }
 
-    /// Nominal step [s].
+    /// Nominal step (s).
     pub fn dt(&self) -> f64 {
         self.dt
     }

@@ -107,7 +107,7 @@ impl ContactMonitor {
     /// One control tick. `tau` and `friction` are `(nv,)`, or `(nv - 6,)` for a floating base; `wrenches` the sensors'
     /// readings, a NaN where one has none. Without sensors there are none.
     ///
-    /// `dt` [s] is the time since the last sample that was accepted, where it is measured. Without it, that is the options'
+    /// `dt` (s) is the time since the last sample that was accepted, where it is measured. Without it, that is the options'
     /// `dt`, and as much again for every sample refused in between. Over more than 50 ms, or five times the options' `dt`
     /// if that is longer, nothing is known of the mean torque: the external torque is then kept as it was.
     ///
@@ -150,7 +150,7 @@ impl ContactMonitor {
         Ok(())
     }
 
-    /// A tick whose sample never came to [`ContactMonitor::update`], `dt` [s] after the last that was accepted if that is
+    /// A tick whose sample never came to [`ContactMonitor::update`], `dt` (s) after the last that was accepted if that is
     /// measured: as if it had been refused.
     pub fn miss(&mut self, dt: Option<f64>) {
         self.clock.miss(dt);
@@ -201,7 +201,7 @@ impl ContactMonitor {
         }
     }
 
-    /// Subtracts the bias, which follows the collision torque while nothing touches, over a step of `length` [s]. `new`
+    /// Subtracts the bias, which follows the collision torque while nothing touches, over a step of `length` (s). `new`
     /// is false where the step brought no new torque: the first, and one over a gap. False during the bias's first estimate.
     fn remove_bias(&mut self, length: f64, new: bool) -> bool {
         let Self { bias, sensing, detector, release, collision_torque, external_torque, .. } = self;
@@ -290,12 +290,12 @@ impl ContactMonitor {
         }
     }
 
-    /// Since the first accepted call [s].
+    /// Since the first accepted call (s).
     pub fn time(&self) -> f64 {
         self.clock.time()
     }
 
-    /// Time between two calls that is assumed where none is given [s].
+    /// Time between two calls that is assumed where none is given (s).
     pub fn dt(&self) -> f64 {
         self.clock.dt()
     }

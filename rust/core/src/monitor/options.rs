@@ -8,23 +8,23 @@ use crate::robot::{JointKind, Robot};
 /// Settings of a [`ContactMonitor`](super::ContactMonitor).
 #[derive(Debug, Clone)]
 pub struct MonitorOptions {
-    /// Time between two calls [s].
+    /// Time between two calls (s).
     pub dt: f64,
-    /// Per velocity variable, or one for all [1/s].
+    /// Per velocity variable, or one for all (1/s).
     pub observer_gain: Vec<f64>,
-    /// Of the low-pass on the sensors' external wrenches [1/s], infinite for no low-pass. If none, the
+    /// Of the low-pass on the sensors' external wrenches (1/s), infinite for no low-pass. If none, the
     /// observer's smallest, and no low-pass where that is at least half the tick rate.
     pub wrench_gain: Option<f64>,
     /// Thresholds, number of contacts, pushing, sensors.
     pub isolation: IsolatorOptions,
-    /// A signal stays on for this time after it was last over its threshold [s].
+    /// A signal stays on for this time after it was last over its threshold (s).
     pub hold_time: f64,
-    /// Time constant of the bias that is tracked while nothing touches [s]; none for no tracking.
+    /// Time constant of the bias that is tracked while nothing touches (s); none for no tracking.
     pub bias_time_constant: Option<f64>,
     /// Greatest bias of each joint, in its thresholds; infinite for no limit. A model that is farther off must be mended.
     pub bias_limit: f64,
     /// With bias tracking: a torque that stands still for this long is no contact, whatever its size within `bias_limit`
-    /// [s]; none: a contact may last for ever.
+    /// (s); none: a contact may last for ever.
     pub bias_settle_time: Option<f64>,
     /// With bias tracking: the share of its greatest torque in a contact that a joint's gear or sensor may keep after it.
     /// Per velocity variable, or one for all.
@@ -38,7 +38,7 @@ const BIAS_LIMIT: f64 = 30.0;
 const HYSTERESIS: f64 = 0.2;
 
 impl MonitorOptions {
-    /// The defaults, for calls every `dt` [s].
+    /// The defaults, for calls every `dt` (s).
     pub fn new(dt: f64) -> Self {
         Self {
             dt,
@@ -80,7 +80,7 @@ impl MonitorOptions {
         })
     }
 
-    /// Greatest bias of each joint [Nm, N], with checked thresholds `(nv,)`.
+    /// Greatest bias of each joint (Nm, N), with checked thresholds `(nv,)`.
     pub(super) fn greatest_bias(&self, threshold: &[f64]) -> Result<Vec<f64>> {
         if self.bias_limit.is_nan() || self.bias_limit <= 0.0 {
             return Err(Error::input(

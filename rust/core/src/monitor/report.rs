@@ -7,7 +7,7 @@ use crate::isolation::Isolation;
 /// What the monitor says of one tick.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ContactReport {
-    /// Since the first accepted call [s].
+    /// Since the first accepted call (s).
     pub time: f64,
     /// Whether there is a contact.
     pub collision: bool,
@@ -23,7 +23,7 @@ pub struct ContactReport {
     pub external_torque: Vec<f64>,
     /// The same without wanted contacts (Vorndamme 2017, eq. 20), zero where joints are left out `(nv,)`.
     pub collision_torque: Vec<f64>,
-    /// External wrench that each sensor sees, world axes, at its origin; NaN where one is left out [N, Nm].
+    /// External wrench that each sensor sees, world axes, at its origin; NaN where one is left out (N, Nm).
     pub wrenches: Vec<Vector6<f64>>,
     /// Indices of the sensors without a reading.
     pub sensors_left_out: Vec<usize>,

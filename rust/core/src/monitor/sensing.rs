@@ -25,7 +25,7 @@ pub(super) struct Sensing {
     /// Sensors in use.
     tree: SensorTree,
     wanted: Vec<bool>,
-    /// How long a wanted sensor stays untrusted after a gap [s].
+    /// How long a wanted sensor stays untrusted after a gap (s).
     settling_time: f64,
     unsettled: Vec<f64>,
     /// Whether a sensor has been read for long enough to be trusted in full; of those that are not wanted it is not asked.
@@ -72,7 +72,7 @@ impl Sensing {
         })
     }
 
-    /// A step of nominally `dt` [s], after the observer's, with checked readings and the joints' thresholds `(nv,)`.
+    /// A step of nominally `dt` (s), after the observer's, with checked readings and the joints' thresholds `(nv,)`.
     pub fn update(
         &mut self,
         observer: &MomentumObserver,

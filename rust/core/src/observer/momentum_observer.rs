@@ -56,7 +56,7 @@ pub struct MomentumObserver {
 }
 
 impl MomentumObserver {
-    /// An observer that is called every `dt` [s], with a `gain` [1/s] per velocity variable (or one for all).
+    /// An observer that is called every `dt` (s), with a `gain` (1/s) per velocity variable (or one for all).
     ///
     /// # Errors
     /// [`Error::Input`] where `dt` or a gain is not positive and finite, or their number is wrong.
@@ -187,7 +187,7 @@ impl MomentumObserver {
         &self.acceleration
     }
 
-    /// The gain `(nv,)` [1/s].
+    /// The gain `(nv,)` (1/s).
     pub fn gain(&self) -> &[f64] {
         &self.gain
     }

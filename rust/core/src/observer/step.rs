@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 
-/// Shortest and longest time step [s].
+/// Shortest and longest time step (s).
 const TIME_STEPS: std::ops::RangeInclusive<f64> = 1e-9..=LONGEST_STEP;
 pub(crate) const LONGEST_STEP: f64 = 1e9;
 
@@ -11,14 +11,14 @@ pub(crate) const LONGEST_STEP: f64 = 1e9;
 pub(crate) enum Step {
     /// The time step that the object was made for.
     Nominal,
-    /// Another time [s].
+    /// Another time (s).
     Of(f64),
-    /// A time [s] over which the mean torque is not known from the two samples at its ends: estimates are kept.
+    /// A time (s) over which the mean torque is not known from the two samples at its ends: estimates are kept.
     Gap(f64),
 }
 
 impl Step {
-    /// Its length [s].
+    /// Its length (s).
     pub fn length(self, nominal: f64) -> f64 {
         match self {
             Step::Nominal => nominal,
@@ -31,7 +31,7 @@ impl Step {
     }
 }
 
-/// Refuses what cannot be a time step [s].
+/// Refuses what cannot be a time step (s).
 pub(crate) fn check_time_step(dt: f64) -> Result<()> {
     if TIME_STEPS.contains(&dt) {
         Ok(())

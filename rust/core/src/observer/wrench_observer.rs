@@ -31,11 +31,11 @@ pub(crate) struct WrenchObserver {
     robot: Arc<Robot>,
     parts: Vec<DistalPart>,
     dt: f64,
-    /// The momentum observer's, per velocity variable [1/s].
+    /// The momentum observer's, per velocity variable (1/s).
     gain: Vec<f64>,
-    /// Of the wrenches' low-pass [1/s].
+    /// Of the wrenches' low-pass (1/s).
     wrench_gain: f64,
-    /// `exp(-gain length)` for the `length` of the last step, which is `decay_step` [s].
+    /// `exp(-gain length)` for the `length` of the last step, which is `decay_step` (s).
     decay: Vec<f64>,
     /// The same of the wrenches; zero without a low-pass.
     wrench_decay: f64,
@@ -59,7 +59,7 @@ pub(crate) struct WrenchObserver {
 }
 
 impl WrenchObserver {
-    /// For the sensors of a tree, the momentum observer's gain `(nv,)` [1/s] and its time step [s]; `wrench_gain` [1/s]
+    /// For the sensors of a tree, the momentum observer's gain `(nv,)` (1/s) and its time step (s); `wrench_gain` (1/s)
     /// of the low-pass on the wrenches, infinite for no low-pass. By default the smallest of `gain`, and no
     /// low-pass where that forgets within two ticks: it says that velocities can be trusted from tick to tick.
     ///
@@ -134,7 +134,7 @@ impl WrenchObserver {
         self.before.bodies.copy_from_slice(&kinematics.bodies);
     }
 
-    /// Decays for a step of `length` [s], kept for the next of the same length.
+    /// Decays for a step of `length` (s), kept for the next of the same length.
     fn set_step(&mut self, length: f64) {
         if length.to_bits() == self.decay_step.to_bits() {
             return;
@@ -205,7 +205,7 @@ impl WrenchObserver {
         }
     }
 
-    /// External wrenches: (force, moment) on the robot at each sensor's origin, world axes [N, Nm], the mean since the
+    /// External wrenches: (force, moment) on the robot at each sensor's origin, world axes (N, Nm), the mean since the
     /// last tick behind the low-pass, if any; NaN where a sensor is left out.
     pub fn external(&self) -> &[Vector6<f64>] {
         &self.external

@@ -60,15 +60,15 @@ columns! {
     link: u32 = 0,
     /// Triangle of the link's surface; -1 on an exact primitive.
     triangle: i64 = -1,
-    /// Contact point, link frame [m].
+    /// Contact point, link frame (m).
     point: Vector3<f64> = Vector3::zeros(),
     /// Outward unit normal of the contact, link frame.
     normal: Vector3<f64> = Vector3::z(),
-    /// The obstacle's centre of curvature, which stays put in the world; unused by the baselines [m].
+    /// The obstacle's centre of curvature, which stays put in the world; unused by the baselines (m).
     centre: Vector3<f64> = Vector3::zeros(),
-    /// From the centre to the contact point, negative where the centre is inside the link [m].
+    /// From the centre to the contact point, negative where the centre is inside the link (m).
     distance: f64 = 0.0,
-    /// Along the inward normal: the mean of what is believed [N]. Below zero there is a gap.
+    /// Along the inward normal: the mean of what is believed (N). Below zero there is a gap.
     force: f64 = 0.0,
     /// Mean of what is believed [N/m].
     stiffness: f64 = 1.0,

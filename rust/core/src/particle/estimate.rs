@@ -42,9 +42,9 @@ impl Event {
 pub struct Mode {
     /// Index into the robot's links.
     pub link: usize,
-    /// On the link's surface, world frame [m].
+    /// On the link's surface, world frame (m).
     pub point: Vector3<f64>,
-    /// On the robot, world frame [N].
+    /// On the robot, world frame (N).
     pub force: Vector3<f64>,
     /// Outward, world frame.
     pub normal: Vector3<f64>,
@@ -52,7 +52,7 @@ pub struct Mode {
     pub stiffness: f64,
     /// Share of the particles' weight.
     pub probability: f64,
-    /// Root of the mean squared distance of the mode's particles from their mean [m].
+    /// Root of the mean squared distance of the mode's particles from their mean (m).
     pub spread: f64,
 }
 
@@ -65,9 +65,9 @@ pub struct ContactEstimate {
     pub event: Event,
     /// The most probable link, an index into the robot's links.
     pub link: Option<usize>,
-    /// The most probable place on that link, world frame [m].
+    /// The most probable place on that link, world frame (m).
     pub point: Vector3<f64>,
-    /// On the robot, world frame [N].
+    /// On the robot, world frame (N).
     pub force: Vector3<f64>,
     /// Outward, world frame.
     pub normal: Vector3<f64>,

@@ -107,7 +107,7 @@ impl ContactParticleFilter {
         &self.state.instant.frames.wanted
     }
 
-    /// Contact point of particle k, world frame [m].
+    /// Contact point of particle k, world frame (m).
     pub fn point(&self, k: usize) -> Vector3<f64> {
         let FilterState { instant, particles, .. } = &self.state;
         instant.pose(particles.link[k] as usize).transform_point(&particles.point[k])

@@ -44,17 +44,17 @@ pub struct FilterOptions {
     pub links: Option<Vec<String>>,
     /// Same seed, same answer, for any number of threads.
     pub seed: u64,
-    /// Least and greatest force at the start [N].
+    /// Least and greatest force at the start (N).
     pub force_range: [f64; 2],
     /// Least and greatest contact stiffness [N/m].
     pub stiffness_range: [f64; 2],
-    /// Least and greatest radius of the obstacle's curvature [m].
+    /// Least and greatest radius of the obstacle's curvature (m).
     pub radius_range: [f64; 2],
     /// Standard deviation of a torque at rest, one for all or one a joint [Nm; N for a sliding joint].
     pub torque_noise: Vec<f64>,
     /// Standard deviation of a torque relative to its size.
     pub relative_noise: f64,
-    /// Below it on every joint there is no contact, one for all or one a joint [Nm].
+    /// Below it on every joint there is no contact, one for all or one a joint (Nm).
     pub torque_threshold: Vec<f64>,
     /// How sharpness and noise change.
     pub schedule: Schedule,

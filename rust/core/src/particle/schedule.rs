@@ -15,7 +15,7 @@ pub enum Schedule {
     Explicit {
         /// The likelihood's alpha [1/Nm]; for the Gaussian one over the noise.
         sharpness: [f64; 2],
-        /// Standard deviation of the point's noise [m].
+        /// Standard deviation of the point's noise (m).
         point_noise: [f64; 2],
         /// Standard deviation of the force's noise, relative.
         force_noise: [f64; 2],

@@ -10,11 +10,11 @@ use crate::surface::Part;
 pub enum JointKind {
     /// A floating base: `q` = position, quaternion (x, y, z, w); `v` = linear, angular, both in the base frame.
     FreeFlyer,
-    /// `q` is the angle [rad].
+    /// `q` is the angle (rad).
     Revolute,
-    /// `q` is (cos, sin) of the angle; `v` the angular velocity [rad/s].
+    /// `q` is (cos, sin) of the angle; `v` the angular velocity (rad/s).
     Continuous,
-    /// `q` is the displacement [m].
+    /// `q` is the displacement (m).
     Prismatic,
 }
 
@@ -60,13 +60,13 @@ pub struct JointDescription {
     pub axis: Vector3<f64>,
     /// Joint frame in the parent joint's frame at zero.
     pub placement: Pose,
-    /// Mass of the body [kg].
+    /// Mass of the body (kg).
     pub mass: f64,
-    /// Centre of mass in the joint frame [m].
+    /// Centre of mass in the joint frame (m).
     pub com: Vector3<f64>,
-    /// Inertia about the centre of mass, in joint axes [kg m^2].
+    /// Inertia about the centre of mass, in joint axes (kg m^2).
     pub inertia: Matrix3<f64>,
-    /// Rotor inertia added to the diagonal of the mass matrix [kg m^2 or kg].
+    /// Rotor inertia added to the diagonal of the mass matrix (kg m^2 or kg).
     pub armature: f64,
 }
 
@@ -81,11 +81,11 @@ pub struct LinkDescription {
     pub placement: Pose,
     /// Index of the link that its joint, fixed or moving, hangs from; none for the root.
     pub parent: Option<usize>,
-    /// Its own mass [kg]: of the joint's body, the part that is this link's.
+    /// Its own mass (kg): of the joint's body, the part that is this link's.
     pub mass: f64,
-    /// Its own centre of mass in the link frame [m].
+    /// Its own centre of mass in the link frame (m).
     pub com: Vector3<f64>,
-    /// Its own inertia about the centre of mass, in link axes [kg m^2].
+    /// Its own inertia about the centre of mass, in link axes (kg m^2).
     pub inertia: Matrix3<f64>,
     /// Shapes in the link frame; none where the link cannot be touched.
     pub geometry: Vec<Part>,
@@ -101,7 +101,7 @@ pub struct RobotDescription {
     /// Links, in any order. A body's inertia is its joint's; what its links' own do not add up to is taken to sit
     /// at the link that the joint moves.
     pub links: Vec<LinkDescription>,
-    /// Gravity in the world frame [m/s^2].
+    /// Gravity in the world frame (m/s^2).
     pub gravity: Vector3<f64>,
     /// What a loader found odd and what it did about it.
     pub warnings: Vec<String>,

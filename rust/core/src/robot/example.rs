@@ -6,10 +6,10 @@ use super::{JointDescription, JointKind, LinkDescription, Robot, RobotDescriptio
 use crate::spatial::Pose;
 use crate::surface::{Geometry, Part};
 
-/// Distance from joint to joint [m], and the links' radius [m].
+/// Distance from joint to joint (m), and the links' radius (m).
 const LENGTH: f64 = 0.3;
 const RADIUS: f64 = 0.05;
-/// Of each link [kg].
+/// Of each link (kg).
 const MASS: f64 = 2.0;
 
 impl RobotDescription {

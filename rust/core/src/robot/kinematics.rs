@@ -14,11 +14,11 @@ use crate::spatial::Pose;
 pub struct BodyState {
     /// Rotation from body to world axes.
     pub rotation: Matrix3<f64>,
-    /// Body origin, from the reference origin [m].
+    /// Body origin, from the reference origin (m).
     pub position: Vector3<f64>,
-    /// Linear velocity of the body-fixed point at the reference origin [m/s].
+    /// Linear velocity of the body-fixed point at the reference origin (m/s).
     pub linear: Vector3<f64>,
-    /// Angular velocity [rad/s].
+    /// Angular velocity (rad/s).
     pub angular: Vector3<f64>,
 }
 
@@ -51,7 +51,7 @@ impl BodyState {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Kinematics {
-    /// The reference origin in the world frame [m].
+    /// The reference origin in the world frame (m).
     pub origin: Vector3<f64>,
     /// One state a body.
     pub bodies: Vec<BodyState>,

@@ -17,11 +17,11 @@ pub struct Link {
     pub(crate) placement: Pose,
     /// The link that its joint, fixed or moving, hangs from; none for the root.
     pub parent: Option<usize>,
-    /// Its own mass [kg].
+    /// Its own mass (kg).
     pub mass: f64,
-    /// Its own centre of mass in the link frame [m].
+    /// Its own centre of mass in the link frame (m).
     pub com: Vector3<f64>,
-    /// Its own inertia about the centre of mass, in link axes [kg m^2].
+    /// Its own inertia about the centre of mass, in link axes (kg m^2).
     pub inertia: Matrix3<f64>,
     /// Its surface, in the link frame.
     pub surface: Option<Surface>,

@@ -47,7 +47,7 @@ pub struct Robot {
     warnings: Vec<String>,
 }
 
-/// Smallest mass [kg] and moment of inertia [kg m^2] that is not zero: computing with less loses its digits.
+/// Smallest mass (kg) and moment of inertia (kg m^2) that is not zero: computing with less loses its digits.
 const LEAST_INERTIA: f64 = 1e-60;
 
 fn check_size(owner: &str, mass: f64, inertia: &Matrix3<f64>) -> Result<()> {

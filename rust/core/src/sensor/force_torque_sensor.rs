@@ -38,7 +38,7 @@ impl Convention {
 
 /// A sensor where a link joins its parent: the link and all behind it load the sensor.
 ///
-/// A reading is (force, moment) about the sensor frame's origin, in that frame's axes [N, Nm].
+/// A reading is (force, moment) about the sensor frame's origin, in that frame's axes (N, Nm).
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForceTorqueSensor {
     /// Unique name.

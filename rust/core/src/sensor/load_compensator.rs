@@ -90,7 +90,7 @@ impl LoadCompensator {
     }
 
     /// External wrenches at `q`, `v` and the acceleration `a`, one a sensor: (force, moment) on the robot at the
-    /// sensor's origin, world axes [N, Nm]. `wrenches` are the readings, sensor axes, in the sensors' order.
+    /// sensor's origin, world axes (N, Nm). `wrenches` are the readings, sensor axes, in the sensors' order.
     ///
     /// A reading with a NaN leaves its sensor out: its row is NaN, the others hold.
     ///

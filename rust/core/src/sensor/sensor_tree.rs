@@ -204,7 +204,7 @@ impl SensorTree {
         of_link.iter_mut().zip(nearest.iter()).for_each(|(sensor, nearest)| *sensor = in_use(*nearest));
     }
 
-    /// A sensor's origin, from `kinematics.origin`, world axes [m].
+    /// A sensor's origin, from `kinematics.origin`, world axes (m).
     #[inline]
     pub fn position(&self, kinematics: &Kinematics, sensor: usize) -> Vector3<f64> {
         let Mount { body, placement, .. } = &self.mounts[sensor];

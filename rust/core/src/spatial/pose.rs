@@ -20,7 +20,7 @@ use nalgebra::{Matrix3, Vector3};
 pub struct Pose {
     /// Rotation from the local to the outer frame.
     pub rotation: Matrix3<f64>,
-    /// The local origin in the outer frame [m].
+    /// The local origin in the outer frame (m).
     pub translation: Vector3<f64>,
 }
 

@@ -9,12 +9,12 @@ use crate::error::{Error, Result};
 use crate::robot::description::RobotDescription;
 
 /// A principal moment is clearly negative when below both: published models have rounding errors below the first,
-/// and inertias moved to the wrong point (up to a fifth of the largest moment) below the second [kg m^2].
+/// and inertias moved to the wrong point (up to a fifth of the largest moment) below the second (kg m^2).
 const NEGATIVE_MOMENT: f64 = 1e-6;
 const NEGATIVE_SHARE: f64 = 0.5;
 /// Published moments carry two or three digits.
 const TRIANGLE_SLACK: f64 = 1e-2;
-/// As good as zero [kg m^2].
+/// As good as zero (kg m^2).
 pub(super) const NO_MOMENT: f64 = 1e-12;
 const MOST_STEPS: usize = 1000;
 

@@ -56,7 +56,7 @@ pub struct UrdfOptions {
     pub locked_joints: Vec<(String, Option<f64>)>,
     /// Which shapes make the surface.
     pub geometry: UrdfGeometry,
-    /// Gravity in the world frame [m/s^2].
+    /// Gravity in the world frame (m/s^2).
     pub gravity: Vector3<f64>,
 }
 

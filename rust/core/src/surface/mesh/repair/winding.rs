@@ -138,7 +138,7 @@ fn agree(
     }
 }
 
-/// Signed volume about the members' middle [m^3], and area [m^2].
+/// Signed volume about the members' middle [m^3], and area (m^2).
 fn measure(vertices: &[Vector3<f64>], triangles: &[[u32; 3]], members: &[u32]) -> (f64, f64) {
     let corners = |&i: &u32| triangles[i as usize].map(|v| vertices[v as usize]);
     let mut area = 0.0;
