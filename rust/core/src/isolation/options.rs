@@ -7,6 +7,20 @@ use crate::sensor::ForceTorqueSensor;
 const LOCATE_WITHIN: f64 = 0.05;
 
 /// Settings of a [`ContactIsolator`](super::ContactIsolator).
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::isolation::{ContactIsolator, IsolatorOptions};
+/// use contactsense::robot::Robot;
+///
+/// let robot = Arc::new(Robot::example_arm());
+/// let options = IsolatorOptions { torque_threshold: vec![0.5], max_contacts: 2, ..IsolatorOptions::default() };
+/// let mut isolator = ContactIsolator::new(robot, &options)?;
+/// // No joint feels more than its threshold.
+/// assert!(isolator.isolate(&[0.4; 7], &[0.3; 7])?.contacts.is_empty());
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct IsolatorOptions {
     /// Per velocity variable, or one for all (Nm, N). Also the scale of the torques' errors.

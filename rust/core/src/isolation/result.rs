@@ -5,6 +5,27 @@ use std::ops::Range;
 use nalgebra::{Vector3, Vector6};
 
 /// A place where the line of action meets a surface.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::isolation::{ContactIsolator, IsolatorOptions};
+/// use contactsense::robot::Robot;
+///
+/// let robot = Arc::new(Robot::example_arm());
+/// let mut isolator = ContactIsolator::new(robot.clone(), &IsolatorOptions::default())?;
+/// // A push on the side of the last link.
+/// let (q, link) = ([0.3, 0.8, -0.4, 0.9, 0.5, 0.7, 0.0], robot.link("link_7")?);
+/// let pose = robot.link_pose(&q, link)?;
+/// let jacobian = robot.jacobian(&q, link, Some(pose.transform_point(&[0.05, 0.0, 0.1].into()).into()))?;
+/// let tau_ext = jacobian.rows(0, 3).transpose() * (pose.rotation * nalgebra::Vector3::new(-20.0, 0.0, 0.0));
+/// let isolation = isolator.isolate(&q, tau_ext.as_slice())?;
+/// // Its line goes in at one side and comes out at the other.
+/// let candidates = &isolation.candidates[isolation.contacts[0].candidates.clone()];
+/// assert!(candidates[0].pushing && candidates[0].link == link);
+/// assert!(candidates[1..].iter().any(|other| !other.pushing && other.distance > candidates[0].distance));
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
     /// Index into [`crate::robot::Robot::links`].
@@ -20,6 +41,22 @@ pub struct Candidate {
 }
 
 /// One contact. Vectors that the data do not determine are NaN.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::isolation::{ContactIsolator, IsolatorOptions};
+/// use contactsense::robot::Robot;
+///
+/// let robot = Arc::new(Robot::example_arm());
+/// let mut isolator = ContactIsolator::new(robot.clone(), &IsolatorOptions::default())?;
+/// // Torques of the first three joints say on which link a contact is, and not where.
+/// let isolation = isolator.isolate(&[0.4; 7], &[1.0, 2.0, 0.5, 0.0, 0.0, 0.0, 0.0])?;
+/// let contact = &isolation.contacts[0];
+/// assert_eq!(contact.link, robot.link("link_3")?);
+/// assert!(!contact.located && contact.point.x.is_nan());
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
     /// Index into [`crate::robot::Robot::links`].
@@ -69,6 +106,20 @@ impl Contact {
 }
 
 /// All contacts of one instant.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::isolation::{ContactIsolator, IsolatorOptions};
+/// use contactsense::robot::Robot;
+///
+/// let robot = Arc::new(Robot::example_arm());
+/// let mut isolator = ContactIsolator::new(robot.clone(), &IsolatorOptions::default())?;
+/// let isolation = isolator.isolate(&[0.4; 7], &[1.0, 2.0, 0.5, 0.0, 0.0, 0.0, 0.0])?;
+/// assert_eq!((isolation.contacts.len(), isolation.rank_deficit), (1, 3));
+/// assert!(isolation.link_candidates.contains(&robot.link("link_3")?) && !isolation.truncated);
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Isolation {
     /// One contact a branch that feels one, farthest from the base first.

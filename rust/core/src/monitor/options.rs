@@ -6,6 +6,23 @@ use crate::isolation::IsolatorOptions;
 use crate::robot::{JointKind, Robot};
 
 /// Settings of a [`ContactMonitor`](super::ContactMonitor).
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::monitor::{ContactMonitor, MonitorOptions};
+/// use contactsense::robot::Robot;
+///
+/// // A model that is a little off: its error is learnt within some seconds without contact.
+/// let mut options = MonitorOptions { bias_time_constant: Some(1.0), ..MonitorOptions::new(1e-3) };
+/// options.isolation.torque_threshold = vec![2.0];
+/// let monitor = ContactMonitor::new(Arc::new(Robot::example_arm()), &options)?;
+/// assert_eq!((monitor.dt(), monitor.bias()), (1e-3, Some(&[0.0; 7][..])));
+///
+/// options.isolation.torque_threshold = vec![2.0, 1.0];
+/// assert!(ContactMonitor::new(Arc::new(Robot::example_arm()), &options).is_err());
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct MonitorOptions {
     /// Time between two calls (s).

@@ -5,6 +5,24 @@ use nalgebra::Vector6;
 use crate::isolation::Isolation;
 
 /// What the monitor says of one tick.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
+/// use contactsense::robot::Robot;
+///
+/// let mut monitor = ContactMonitor::new(Arc::new(Robot::example_arm()), &MonitorOptions::new(1e-3))?;
+/// let mut report = ContactReport::default();
+/// for _ in 0..3 {
+///     monitor.update(&[0.0; 7], &[0.0; 7], &[0.0; 7], None, None, None)?;
+///     // The buffers of the report are used again.
+///     monitor.report_into(&mut report);
+/// }
+/// assert!(!report.collision && report.isolation.contacts.is_empty());
+/// assert_eq!((report.time, report.external_torque.len()), (0.002, 7));
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ContactReport {
     /// Since the first accepted call (s).

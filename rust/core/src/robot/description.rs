@@ -6,6 +6,13 @@ use crate::spatial::Pose;
 use crate::surface::Part;
 
 /// How a joint moves. `q` and `v` follow Pinocchio's order and meaning.
+///
+/// ```
+/// use contactsense::robot::JointKind;
+///
+/// assert_eq!((JointKind::Continuous.nq(), JointKind::Continuous.nv()), (2, 1));
+/// assert_eq!((JointKind::FreeFlyer.nq(), JointKind::FreeFlyer.nv()), (7, 6));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum JointKind {
     /// A floating base: `q` = position, quaternion (x, y, z, w); `v` = linear, angular, both in the base frame.
@@ -48,6 +55,16 @@ impl JointKind {
 }
 
 /// A joint and the rigid body it moves (all links fixed to it lumped).
+///
+/// ```
+/// use contactsense::robot::{JointDescription, JointKind, Robot, RobotDescription};
+///
+/// let mut description = RobotDescription::example_arm();
+/// let third: &mut JointDescription = &mut description.joints[2];
+/// (third.kind, third.armature) = (JointKind::Continuous, 0.1);
+/// assert_eq!(Robot::new(description)?.nq(), 8);
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointDescription {
     /// Unique name.
@@ -71,6 +88,22 @@ pub struct JointDescription {
 }
 
 /// A URDF link: a named frame on a body, with the parts of its surface.
+///
+/// ```
+/// use contactsense::robot::{LinkDescription, Robot, RobotDescription};
+///
+/// let mut description = RobotDescription::example_arm();
+/// // A frame at the tip, which has no surface and no mass.
+/// let last = description.links[6].clone();
+/// let mut tip = LinkDescription { name: "tip".into(), parent: Some(6), mass: 0.0, geometry: vec![], ..last };
+/// tip.placement.translation.z = 0.3;
+/// tip.inertia.fill(0.0);
+/// description.links.push(tip);
+/// let robot = Robot::new(description)?;
+/// let pose = robot.link_pose(&robot.neutral(), robot.link("tip")?)?;
+/// assert!((pose.translation.z - 2.4).abs() < 1e-12);
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct LinkDescription {
     /// Unique name.
@@ -92,6 +125,20 @@ pub struct LinkDescription {
 }
 
 /// Everything `Robot::new` needs.
+///
+/// ```
+/// use contactsense::robot::{Robot, RobotDescription};
+///
+/// let mut description = RobotDescription::example_arm();
+/// description.gravity.fill(0.0);
+/// let robot = Robot::new(description)?;
+/// assert_eq!(robot.inverse_dynamics(&[0.4; 7], &[0.0; 7], &[0.0; 7])?, [0.0; 7]);
+///
+/// let mut description = RobotDescription::example_arm();
+/// description.links[3].name = "link_1".into();
+/// assert!(Robot::new(description).unwrap_err().to_string().contains("two links are named 'link_1'"));
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct RobotDescription {
     /// The robot's name.

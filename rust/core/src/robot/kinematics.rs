@@ -10,6 +10,19 @@ use super::robot::{Robot, WORLD};
 use crate::spatial::Pose;
 
 /// A body's pose and velocity.
+///
+/// ```
+/// use contactsense::robot::{Kinematics, Robot};
+///
+/// let robot = Robot::example_arm();
+/// let mut kinematics = Kinematics::new(&robot);
+/// kinematics.set_configuration(&robot, &[0.0; 7]);
+/// kinematics.set_velocity(&robot, &[0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+/// // The second joint turns about y, 0.3 m above the first.
+/// let state = &kinematics.bodies[2];
+/// assert!((state.axis().y - 1.0).abs() < 1e-12 && (state.position.z - 0.3).abs() < 1e-12);
+/// assert!(state.velocity_at(&state.position).norm() < 1e-12);
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct BodyState {
     /// Rotation from body to world axes.

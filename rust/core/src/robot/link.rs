@@ -7,6 +7,15 @@ use crate::spatial::Pose;
 use crate::surface::Surface;
 
 /// A link: a frame on a body, perhaps with a surface.
+///
+/// ```
+/// use contactsense::robot::Robot;
+///
+/// let robot = Robot::example_arm();
+/// let link = &robot.links()[6];
+/// assert_eq!((link.name.as_str(), link.mass), ("link_7", 2.0));
+/// assert!(link.surface.is_some() && link.parent.is_some());
+/// ```
 #[derive(Debug)]
 pub struct Link {
     /// URDF name.

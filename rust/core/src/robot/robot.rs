@@ -30,6 +30,18 @@ pub(crate) struct Body {
 }
 
 /// A robot: immutable, shareable between threads.
+///
+/// ```
+/// use contactsense::robot::Robot;
+///
+/// let robot = Robot::example_arm();
+/// let q = robot.neutral();
+/// assert_eq!((robot.nq(), robot.nv()), (7, 7));
+/// // Upright, no joint carries weight.
+/// let weight = robot.inverse_dynamics(&q, &[0.0; 7], &[0.0; 7])?;
+/// assert!(weight.iter().all(|torque| torque.abs() < 1e-12));
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Robot {
     name: String,

@@ -8,6 +8,13 @@ use crate::spatial::Pose;
 const RIGID_TOLERANCE: f64 = 1e-6;
 
 /// Which side's wrench a reading is.
+///
+/// ```
+/// use contactsense::sensor::Convention;
+///
+/// assert_eq!(Convention::default(), Convention::Load);
+/// assert_eq!(Convention::Support.sign() * 3.0, -3.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Convention {
     /// What the distal side exerts on the sensor: a free hand at rest reads its weight.
@@ -39,6 +46,21 @@ impl Convention {
 /// A sensor where a link joins its parent: the link and all behind it load the sensor.
 ///
 /// A reading is (force, moment) about the sensor frame's origin, in that frame's axes (N, Nm).
+///
+/// ```
+/// use contactsense::sensor::{Convention, ForceTorqueSensor};
+/// use contactsense::spatial::Pose;
+///
+/// let mut sensor = ForceTorqueSensor {
+///     name: "wrist".into(),
+///     link: "link_7".into(),
+///     pose: Pose::identity(),
+///     convention: Convention::Load,
+/// };
+/// assert!(sensor.has_rigid_pose());
+/// sensor.pose.rotation *= 2.0;
+/// assert!(!sensor.has_rigid_pose());
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForceTorqueSensor {
     /// Unique name.

@@ -9,6 +9,16 @@ use crate::spatial::Pose;
 use crate::{Error, Result};
 
 /// A shape in its own frame (m).
+///
+/// ```
+/// use contactsense::spatial::Pose;
+/// use contactsense::surface::{Geometry, Part, Surface};
+///
+/// let geometry = Geometry::Box { half_extents: [0.1, 0.2, 0.3] };
+/// let (surface, _) = Surface::new(vec![Part { geometry, pose: Pose::identity() }])?;
+/// assert!((surface.area() - 0.88).abs() < 1e-12 && surface.watertight());
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum Geometry {
     /// Triangles, counter-clockwise seen from outside (repaired where they are not).
@@ -45,6 +55,20 @@ pub enum Geometry {
 }
 
 /// A shape placed on a link.
+///
+/// ```
+/// use contactsense::spatial::Pose;
+/// use contactsense::surface::{Geometry, Part, Surface};
+/// use nalgebra::Vector3;
+///
+/// let sphere = |x| Part {
+///     geometry: Geometry::Sphere { radius: 0.1 },
+///     pose: Pose { translation: Vector3::new(x, 0.0, 0.0), ..Pose::identity() },
+/// };
+/// let (surface, _) = Surface::new(vec![sphere(0.0), sphere(1.0)])?;
+/// assert!((surface.closest_point(&Vector3::new(0.7, 0.0, 0.0)).distance - 0.2).abs() < 1e-12);
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
     /// The shape.

@@ -82,6 +82,17 @@ impl Sampler {
 }
 
 /// A draw of points that can be made in parts.
+///
+/// ```
+/// use contactsense::robot::Robot;
+///
+/// let robot = Robot::example_arm();
+/// let surface = robot.links()[0].surface.as_ref().expect("every link of this arm has one");
+/// let (mut sampling, mut points) = (surface.sampling(100, 7), vec![]);
+/// // A few at a time: between them there is time for other work.
+/// while sampling.draw(16, &mut points) {}
+/// assert_eq!(points, surface.sample(100, 7));
+/// ```
 pub struct Sampling<'a> {
     sampler: &'a Sampler,
     solids: &'a [Solid],

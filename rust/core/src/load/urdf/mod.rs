@@ -27,6 +27,13 @@ use crate::robot::description::RobotDescription;
 use crate::robot::Robot;
 
 /// Which of a URDF's shapes make the surface.
+///
+/// ```
+/// use contactsense::load::{UrdfGeometry, UrdfOptions};
+///
+/// let options = UrdfOptions { geometry: UrdfGeometry::Visual, ..UrdfOptions::default() };
+/// assert_ne!(options.geometry, UrdfGeometry::default());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum UrdfGeometry {
     /// `<collision>` elements.
@@ -46,6 +53,19 @@ impl UrdfGeometry {
 }
 
 /// How to read a URDF.
+///
+/// ```
+/// use contactsense::load::UrdfOptions;
+/// use contactsense::{robot::Robot, Error};
+///
+/// // A humanoid whose left wrist is held at 0.5 rad.
+/// let options = UrdfOptions {
+///     floating_base: true,
+///     locked_joints: vec![("left_wrist".into(), Some(0.5))],
+///     ..UrdfOptions::default()
+/// };
+/// assert!(matches!(Robot::from_urdf("no_such_file.urdf", &options), Err(Error::Model { .. })));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct UrdfOptions {
     /// Folders that `package://` names and mesh files may come from, besides the URDF's own.
