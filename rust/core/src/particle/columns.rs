@@ -8,6 +8,21 @@ use crate::error::Result;
 macro_rules! columns {
     ($($(#[$doc:meta])* $name:ident: $kind:ty = $empty:expr,)*) => {
         /// All particles; entry k of each column belongs to particle k.
+        ///
+        /// ```
+        /// use std::sync::Arc;
+        ///
+        /// use contactsense::particle::{ContactParticleFilter, FilterOptions};
+        /// use contactsense::robot::Robot;
+        ///
+        /// let options = FilterOptions { particles: 500, ..FilterOptions::default() };
+        /// let mut filter = ContactParticleFilter::new(Arc::new(Robot::example_arm()), options)?;
+        /// filter.update(&[0.4; 7], &[1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])?;
+        /// let particles = filter.particles();
+        /// assert_eq!((particles.link.len(), particles.force.len()), (500, 500));
+        /// assert!(particles.normal.iter().all(|normal| (normal.norm() - 1.0).abs() < 1e-9));
+        /// # Ok::<(), contactsense::Error>(())
+        /// ```
         #[derive(Debug, Clone)]
         pub struct Columns {
             $($(#[$doc])* pub $name: Vec<$kind>,)*

@@ -6,6 +6,20 @@ use super::modes::Modes;
 use crate::torque::Frames;
 
 /// What happened at an update.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::particle::{ContactParticleFilter, Event, FilterOptions};
+/// use contactsense::robot::Robot;
+///
+/// let options = FilterOptions { particles: 500, ..FilterOptions::default() };
+/// let mut filter = ContactParticleFilter::new(Arc::new(Robot::example_arm()), options)?;
+/// assert_eq!(filter.update(&[0.4; 7], &[0.0; 7])?.event, Event::None);
+/// assert_eq!(filter.update(&[0.4; 7], &[1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])?.event, Event::Started);
+/// assert_eq!(filter.update(&[0.4; 7], &[0.0; 7])?.event, Event::Lost);
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Event {
     /// No contact before or now.
@@ -38,6 +52,21 @@ impl Event {
 }
 
 /// A place where the contact may be.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::particle::{ContactParticleFilter, FilterOptions};
+/// use contactsense::robot::Robot;
+///
+/// let options = FilterOptions { particles: 500, ..FilterOptions::default() };
+/// let mut filter = ContactParticleFilter::new(Arc::new(Robot::example_arm()), options)?;
+/// let modes = &filter.update(&[0.4; 7], &[1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])?.modes;
+/// // The most probable first.
+/// assert!(modes.windows(2).all(|pair| pair[0].probability >= pair[1].probability));
+/// assert!(modes.iter().all(|mode| mode.force.dot(&mode.normal) < 0.0), "contacts push");
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mode {
     /// Index into the robot's links.
@@ -57,6 +86,20 @@ pub struct Mode {
 }
 
 /// The contact as the particles see it.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::particle::{ContactParticleFilter, FilterOptions};
+/// use contactsense::robot::Robot;
+///
+/// let options = FilterOptions { particles: 500, ..FilterOptions::default() };
+/// let mut filter = ContactParticleFilter::new(Arc::new(Robot::example_arm()), options)?;
+/// let estimate = filter.update(&[0.4; 7], &[1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])?;
+/// // One pose is not enough to know the place.
+/// assert!(estimate.contact && estimate.ambiguous && estimate.link.is_some());
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct ContactEstimate {
     /// Whether the torques show one. Where not, all numbers but the counts are NaN or empty.

@@ -8,6 +8,13 @@ use crate::robot::{Robot, LARGEST, WORLD};
 use crate::torque::ForceModel;
 
 /// How a contact moves with the robot.
+///
+/// ```
+/// use contactsense::particle::{FilterOptions, Motion};
+///
+/// let baseline = FilterOptions { motion: Motion::FixedOnLink, ..FilterOptions::default() };
+/// assert_ne!(baseline.motion, Motion::default());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Motion {
     /// The obstacle stays, convex and springy (Bimbo 2019, eq. 8).
@@ -20,6 +27,18 @@ pub enum Motion {
 }
 
 /// How errors of torque are weighed.
+///
+/// ```
+/// use contactsense::particle::{FilterOptions, Likelihood, Schedule};
+///
+/// // As in the paper.
+/// let paper = FilterOptions {
+///     likelihood: Likelihood::Exponential,
+///     schedule: Schedule::paper(),
+///     ..FilterOptions::default()
+/// };
+/// assert_ne!(paper.likelihood, Likelihood::default());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Likelihood {
     /// Gaussian, with noise per joint; the force is integrated out.
@@ -30,6 +49,20 @@ pub enum Likelihood {
 }
 
 /// Options of a [`ContactParticleFilter`](super::ContactParticleFilter).
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::particle::{ContactParticleFilter, FilterOptions};
+/// use contactsense::robot::Robot;
+///
+/// let robot = Arc::new(Robot::example_arm());
+/// let links = Some(vec!["link_6".into(), "link_7".into()]);
+/// let options = FilterOptions { particles: 500, links, ..FilterOptions::default() };
+/// assert_eq!(ContactParticleFilter::new(robot.clone(), options.clone())?.links().len(), 2);
+/// assert!(ContactParticleFilter::new(robot, FilterOptions { particles: 0, ..options }).is_err());
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilterOptions {
     /// How many particles.

@@ -4,6 +4,13 @@ use super::options::{FilterOptions, Likelihood};
 use crate::error::{Error, Result};
 
 /// How sharply torques are weighed and how far particles are moved at random.
+///
+/// ```
+/// use contactsense::particle::Schedule;
+///
+/// let Schedule::Explicit { point_noise, updates, .. } = Schedule::paper() else { unreachable!() };
+/// assert!(point_noise[0] > point_noise[1] && updates == 25);
+/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Schedule {
     /// By what the data show: sharp as far as enough particles keep a say and as the torques left over allow, once

@@ -10,6 +10,24 @@ use crate::error::Result;
 use crate::robot::Robot;
 
 /// A filter whose updates are done part by part.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::particle::{FilterOptions, Stages};
+/// use contactsense::robot::Robot;
+///
+/// let (q, tau) = ([0.4; 7], [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0]);
+/// let options = FilterOptions { particles: 500, ..FilterOptions::default() };
+/// let mut stages = Stages::new(Arc::new(Robot::example_arm()), options, &q, &tau)?;
+/// stages.motion(&q, &tau)?;
+/// let effective = stages.likelihood();
+/// assert!(effective > 0.0 && effective <= 500.0);
+/// stages.resampling();
+/// stages.estimate();
+/// assert_eq!(stages.particles().len(), 500);
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Stages(FilterState);
 

@@ -6,6 +6,22 @@ use crate::error::{Error, Result};
 use crate::spatial::basis::across;
 
 /// Which forces a contact can exert.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::particle::{ContactParticleFilter, FilterOptions, ForceModel};
+/// use contactsense::robot::Robot;
+///
+/// let cone = |friction| FilterOptions {
+///     particles: 500,
+///     force_model: ForceModel::FrictionCone(friction),
+///     ..FilterOptions::default()
+/// };
+/// let robot = Arc::new(Robot::example_arm());
+/// assert!(ContactParticleFilter::new(robot.clone(), cone(0.5)).is_ok());
+/// assert!(ContactParticleFilter::new(robot, cone(-1.0)).is_err());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum ForceModel {
     /// Along the inward normal only (Bimbo 2019, eq. 7).
