@@ -34,7 +34,7 @@ impl Draft {
             for (part, file) in link.geometry.iter_mut().zip(files) {
                 let Some(MeshFile { path, scale }) = file else { continue };
                 let (vertices, triangles) = load_mesh(&path, scale)
-                    .map_err(|error| Error::Geometry(format!("link '{}': {error}", link.name)))?;
+                    .map_err(|error| error.within(&format!("link '{}'", link.name)))?;
                 part.geometry = Geometry::Mesh { vertices, triangles };
             }
         }
@@ -123,7 +123,7 @@ fn part(tuple: &Bound<'_, PyTuple>) -> PyResult<(Part, Option<MeshFile>)> {
             let (radius,): (f64,) = sizes.extract()?;
             Geometry::Sphere { radius }
         }
-        other => return Err(to_python(py, Error::Geometry(format!("unknown geometry kind '{other}'")))),
+        other => return Err(to_python(py, Error::geometry(format!("unknown geometry kind '{other}'")))),
     };
     Ok((Part { geometry, pose: placement("placement", &tuple.get_item(2)?)? }, file))
 }

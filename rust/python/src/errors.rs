@@ -84,8 +84,8 @@ pub fn to_python(py: Python<'_>, error: Error) -> PyErr {
         Err(error) => return error,
     };
     let class = match error {
-        Error::Model(_) => &classes.model,
-        Error::Geometry(_) => &classes.geometry,
+        Error::Model { .. } => &classes.model,
+        Error::Geometry { .. } => &classes.geometry,
         Error::Input { .. } => &classes.input,
         Error::Memory(text) => return PyMemoryError::new_err(text),
         _ => &classes.root,

@@ -74,7 +74,7 @@ pub struct SurfaceSamples {
 impl PySurface {
     fn core(&self, py: Python<'_>) -> PyResult<&Surface> {
         let surface = self.robot.links()[self.link].surface.as_ref();
-        surface.ok_or_else(|| to_python(py, Error::Geometry("this link has no surface".into())))
+        surface.ok_or_else(|| to_python(py, Error::geometry("this link has no surface")))
     }
 }
 

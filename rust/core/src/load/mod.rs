@@ -3,6 +3,8 @@
 #[cfg(feature = "mesh-files")]
 mod mesh_file;
 #[cfg(feature = "mesh-files")]
+mod problem;
+#[cfg(feature = "mesh-files")]
 mod regular_file;
 #[cfg(feature = "urdf")]
 mod urdf;

@@ -39,7 +39,8 @@ pub struct Link {
 /// Parents exist, lead to a root, and sit on the link's own body or one that carries it.
 pub(super) fn check_link_tree(links: &[Link], chains: &[Vec<usize>]) -> Result<()> {
     for link in links {
-        let refuse = |text: &str| Err(Error::Model(format!("link '{}': {text}", link.name)));
+        let owner = format!("link '{}'", link.name);
+        let refuse = |text: &str| Err(Error::model(format!("{owner}: {text}")).of(&owner));
         if !link.com.iter().chain(&link.inertia).chain([&link.mass]).all(|x| x.is_finite()) || link.mass < 0.0
         {
             return refuse("mass and inertia must be finite, the mass not negative");

@@ -65,7 +65,7 @@ const LEAST_INERTIA: f64 = 1e-60;
 fn check_size(owner: &str, mass: f64, inertia: &Matrix3<f64>) -> Result<()> {
     for (what, unit, size) in [("mass", "kg", mass.abs()), ("inertia", "kg m^2", inertia.amax())] {
         if size != 0.0 && !(LEAST_INERTIA..LARGEST).contains(&size) {
-            return Err(Error::Model(format!(
+            return Err(Error::model(format!(
                 "{owner}: {what} must be 0 or from {LEAST_INERTIA:e} to {LARGEST:e} {unit}, not {size:e}"
             )));
         }
@@ -77,25 +77,25 @@ fn check_size(owner: &str, mass: f64, inertia: &Matrix3<f64>) -> Result<()> {
 fn check_joint(joint: &JointDescription, number: usize) -> Result<()> {
     let name = &joint.name;
     if joint.parent >= number {
-        return Err(Error::Model(format!("joint '{name}': its parent must come before it")));
+        return Err(Error::model(format!("joint '{name}': its parent must come before it")));
     }
     let finite = joint.placement.rotation.iter().chain(joint.placement.translation.iter());
     let finite = finite.chain(joint.com.iter()).chain(joint.inertia.iter()).chain(joint.axis.iter());
     if !finite.chain([&joint.mass, &joint.armature]).all(|x| x.is_finite()) {
-        return Err(Error::Model(format!("joint '{name}': placement, axis and inertia must be finite")));
+        return Err(Error::model(format!("joint '{name}': placement, axis and inertia must be finite")));
     }
     check_size(&format!("joint '{name}'"), joint.mass, &joint.inertia)?;
     if joint.mass < 0.0 || joint.armature < 0.0 {
-        return Err(Error::Model(format!("joint '{name}': mass and armature must not be negative")));
+        return Err(Error::model(format!("joint '{name}': mass and armature must not be negative")));
     }
     if joint.kind == JointKind::FreeFlyer && number != 1 {
-        return Err(Error::Model(format!(
+        return Err(Error::model(format!(
             "joint '{name}': a free flyer is supported as the base only; other joints must be revolute, \
              continuous or prismatic"
         )));
     }
     if joint.kind != JointKind::FreeFlyer && joint.axis.norm() < 1e-9 {
-        return Err(Error::Model(format!("joint '{name}': the axis must not be zero")));
+        return Err(Error::model(format!("joint '{name}': the axis must not be zero")));
     }
     Ok(())
 }
@@ -119,7 +119,7 @@ impl Robot {
     pub fn new(description: RobotDescription) -> Result<Robot> {
         let RobotDescription { name, joints, links, gravity, mut warnings } = description;
         if !gravity.iter().all(|x| x.abs() < LARGEST) {
-            return Err(Error::Model(format!(
+            return Err(Error::model(format!(
                 "gravity must be three finite numbers below {LARGEST:e} m/s^2, not {:e}, {:e}, {:e}",
                 gravity.x, gravity.y, gravity.z
             )));
@@ -129,7 +129,7 @@ impl Robot {
         let mut chains: Vec<Vec<usize>> = vec![vec![]];
         let (mut nq, mut nv) = (0, 0);
         for (index, joint) in joints.iter().enumerate() {
-            check_joint(joint, index + 1)?;
+            check_joint(joint, index + 1).map_err(|error| error.of(&format!("joint '{}'", joint.name)))?;
             let frame = axis_frame(joint);
             let parent_frame = frames[joint.parent];
             bodies.push(Body {
@@ -159,13 +159,14 @@ impl Robot {
         let mut touchable = vec![];
         let mut frozen = Vec::with_capacity(links.len());
         for (index, link) in links.into_iter().enumerate() {
+            let owner = format!("link '{}'", link.name);
             if link.joint >= bodies.len() {
-                return Err(Error::Model(format!("link '{}': its joint does not exist", link.name)));
+                return Err(Error::model(format!("{owner}: its joint does not exist")).of(&owner));
             }
             if link_index.insert(link.name.clone(), index).is_some() {
-                return Err(Error::Model(format!("two links are named '{}'", link.name)));
+                return Err(Error::model(format!("two links are named '{}'", link.name)).of(&owner));
             }
-            check_size(&format!("link '{}'", link.name), link.mass, &link.inertia)?;
+            check_size(&owner, link.mass, &link.inertia).map_err(|error| error.of(&owner))?;
             let frame = frames[link.joint].transpose();
             let placement = Pose {
                 rotation: frame * link.placement.rotation,
@@ -174,9 +175,8 @@ impl Robot {
             let surface = if link.geometry.is_empty() {
                 None
             } else {
-                let (surface, odd) =
-                    Surface::new(link.geometry).map_err(|error| in_link(&link.name, error))?;
-                warnings.extend(odd.into_iter().map(|text| format!("link '{}': {text}", link.name)));
+                let (surface, odd) = Surface::new(link.geometry).map_err(|error| error.within(&owner))?;
+                warnings.extend(odd.into_iter().map(|text| format!("{owner}: {text}")));
                 touchable.push(index);
                 body_links[link.joint].push(index);
                 Some(surface)
@@ -321,12 +321,5 @@ impl Body {
             inertia: Matrix3::zeros(),
             armature: 0.0,
         }
-    }
-}
-
-fn in_link(name: &str, error: Error) -> Error {
-    match error {
-        Error::Geometry(text) => Error::Geometry(format!("link '{name}': {text}")),
-        other => other,
     }
 }

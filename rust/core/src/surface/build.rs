@@ -11,7 +11,7 @@ use crate::{Error, Result};
 
 pub(super) fn surface(parts: Vec<Part>) -> Result<(Surface, Vec<String>)> {
     if parts.is_empty() {
-        return Err(Error::Geometry("a surface needs at least one part".into()));
+        return Err(Error::geometry("a surface needs at least one part"));
     }
     let several = parts.len() > 1;
     let mut remarks = Vec::new();
@@ -20,9 +20,12 @@ pub(super) fn surface(parts: Vec<Part>) -> Result<(Surface, Vec<String>)> {
     let mut triangles: Vec<[u32; 3]> = Vec::new();
     for (index, part) in parts.into_iter().enumerate() {
         let mut own = Vec::new();
-        let solid = solid(part, triangles.len(), &mut own).map_err(|error| match error {
-            Error::Geometry(what) if several => Error::Geometry(format!("part {index}: {what}")),
-            error => error,
+        let solid = solid(part, triangles.len(), &mut own).map_err(|error| {
+            if several {
+                error.within(&format!("part {index}"))
+            } else {
+                error
+            }
         })?;
         remarks.extend(own.into_iter().map(
             |what| {
@@ -39,7 +42,7 @@ pub(super) fn surface(parts: Vec<Part>) -> Result<(Surface, Vec<String>)> {
         };
         let first = vertices.len();
         if first + own_vertices.len() > u32::MAX as usize {
-            return Err(Error::Geometry(format!("{} vertices are too many", first + own_vertices.len())));
+            return Err(Error::geometry(format!("{} vertices are too many", first + own_vertices.len())));
         }
         vertices.extend(own_vertices);
         triangles.extend(own_triangles.iter().map(|t| t.map(|v| v + first as u32)));

@@ -124,7 +124,7 @@ pub(super) fn primitive(geometry: &Geometry) -> Result<Primitive> {
         if value.is_finite() && value > 0.0 {
             Ok(value)
         } else {
-            Err(Error::Geometry(format!("{kind}: {name} is {value}; it must be positive and finite")))
+            Err(Error::geometry(format!("{kind}: {name} is {value}; it must be positive and finite")))
         }
     };
     Ok(match *geometry {
@@ -143,7 +143,7 @@ pub(super) fn primitive(geometry: &Geometry) -> Result<Primitive> {
             radius: positive("capsule", "radius", radius)?,
             half_length: positive("capsule", "half_length", half_length)?,
         },
-        Geometry::Mesh { .. } => return Err(Error::Geometry("a mesh is no primitive".into())),
+        Geometry::Mesh { .. } => return Err(Error::geometry("a mesh is no primitive")),
     })
 }
 
@@ -151,11 +151,11 @@ pub(super) fn primitive(geometry: &Geometry) -> Result<Primitive> {
 pub(super) fn check_pose(pose: &Pose) -> Result<()> {
     let r = &pose.rotation;
     if !r.iter().chain(pose.translation.iter()).all(|x| x.is_finite()) {
-        return Err(Error::Geometry("a part's pose has numbers that are not finite".into()));
+        return Err(Error::geometry("a part's pose has numbers that are not finite"));
     }
     let off = (r.transpose() * r - nalgebra::Matrix3::identity()).abs().max();
     if off > 1e-6 || r.determinant() < 0.0 {
-        return Err(Error::Geometry(format!(
+        return Err(Error::geometry(format!(
             "a part's pose has a rotation that is not orthonormal and right-handed (off by {off:.1e}); mirror or \
              scale the geometry instead"
         )));

@@ -5,6 +5,7 @@
 mod common;
 
 mod dynamics;
+mod errors;
 mod golden;
 mod mutated_files;
 mod particle_filter;

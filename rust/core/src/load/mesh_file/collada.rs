@@ -8,6 +8,7 @@ use nalgebra::{Matrix4, Rotation3, Unit, Vector3};
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::soup::Soup;
+use crate::load::problem::Problem;
 
 pub(super) type Result<T> = std::result::Result<T, String>;
 
@@ -22,10 +23,10 @@ const MOST_WORK: usize = 50_000_000;
 const VISIT: usize = 20;
 
 /// Vertices (m) and triangles of the document's scene. The up axis is ignored, as ROS does.
-pub(super) fn parse(text: &str) -> Result<Soup> {
+pub(super) fn parse(text: &str) -> std::result::Result<Soup, Problem> {
     crate::load::xml_limits::check(text)?;
     let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    let document = Document::parse_with_options(text, options).map_err(|error| error.to_string())?;
+    let document = Document::parse_with_options(text, options).map_err(Problem::from_error)?;
     let root = document.root_element();
     let unit = child(root, "asset")
         .and_then(|asset| child(asset, "unit"))

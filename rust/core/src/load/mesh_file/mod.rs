@@ -18,6 +18,7 @@ use std::path::Path;
 use nalgebra::Vector3;
 
 use super::mesh_file::soup::Soup;
+use super::problem::Problem;
 use super::regular_file;
 use crate::surface::mesh::repair::weld;
 use crate::{Error, Result};
@@ -41,19 +42,23 @@ pub type VerticesAndTriangles = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 /// if the scale is zero or not finite.
 pub fn load_mesh(path: &Path, scale: [f64; 3]) -> Result<VerticesAndTriangles> {
     if !scale.iter().all(|s| s.is_finite() && *s != 0.0) {
-        let path = path.display();
-        return Err(Error::Geometry(format!("{path}: scale is {scale:?}; it must be finite and not zero")));
+        let text = format!("{}: scale is {scale:?}; it must be finite and not zero", path.display());
+        return Err(Error::geometry(text).in_file(path));
     }
-    let bad = |what: String| Error::Geometry(format!("{}: {what}; meshes can be {KINDS}", path.display()));
+    let bad = |what: Problem| {
+        let text = format!("{}: {what}; meshes can be {KINDS}", path.display());
+        Error::geometry(text).in_file(path).because(what.cause)
+    };
     let kind = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     if !["stl", "obj", "dae"].contains(&kind.as_str()) {
-        return Err(bad(format!("unknown kind of mesh '.{kind}'")));
+        return Err(bad(format!("unknown kind of mesh '.{kind}'").into()));
     }
-    let bytes =
-        regular_file::read(path, LARGEST_FILE).map_err(|cause| bad(format!("cannot be read ({cause})")))?;
+    let bytes = regular_file::read(path, LARGEST_FILE).map_err(|Problem { text, cause }| {
+        bad(Problem { text: format!("cannot be read ({text})"), cause })
+    })?;
     let Soup { mut vertices, mut triangles } = match kind.as_str() {
-        "stl" => stl::parse(&bytes),
-        "obj" => obj::parse(&String::from_utf8_lossy(&bytes)),
+        "stl" => stl::parse(&bytes).map_err(Problem::from),
+        "obj" => obj::parse(&String::from_utf8_lossy(&bytes)).map_err(Problem::from),
         _ => collada::parse(&String::from_utf8_lossy(&bytes)),
     }
     .map_err(bad)?;

@@ -88,12 +88,13 @@ fn kind(joint: &urdf_rs::Joint) -> Result<Option<JointKind>> {
         JointType::Revolute => Ok(Some(JointKind::Revolute)),
         JointType::Continuous => Ok(Some(JointKind::Continuous)),
         JointType::Prismatic => Ok(Some(JointKind::Prismatic)),
-        _ => Err(Error::Model(format!(
+        _ => Err(Error::model(format!(
             "joint '{}' is {:?}; supported: {}",
             joint.name,
             joint.joint_type,
             super::guard::SUPPORTED_JOINTS
-        ))),
+        ))
+        .of(&format!("joint '{}'", joint.name))),
     }
 }
 

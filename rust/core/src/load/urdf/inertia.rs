@@ -25,10 +25,8 @@ pub(super) fn check_links(tree: &Tree) -> Result<Option<String>> {
     for link in tree.robot.links.iter().filter(|link| !tree.without_inertial.contains(&link.name)) {
         let mass = link.inertial.mass.value;
         if mass < 0.0 {
-            return Err(Error::Model(format!(
-                "link '{}': mass must not be negative, not {mass} kg",
-                link.name
-            )));
+            let owner = format!("link '{}'", link.name);
+            return Err(Error::model(format!("{owner}: mass must not be negative, not {mass} kg")).of(&owner));
         }
         let [smallest, middle, largest] = principal_moments(tensor(&link.inertial))?;
         if smallest < -NO_MOMENT || largest > (1.0 + TRIANGLE_SLACK) * (smallest + middle) + NO_MOMENT {
@@ -49,12 +47,13 @@ pub(super) fn check_bodies(description: &RobotDescription) -> Result<()> {
         if moments[0] < -f64::max(NEGATIVE_MOMENT, NEGATIVE_SHARE * moments[2]) {
             let links = description.links.iter().filter(|link| link.joint == index + 1);
             let links: Vec<&str> = links.map(|link| link.name.as_str()).collect();
-            return Err(Error::Model(format!(
+            return Err(Error::model(format!(
                 "joint '{}' (links {}): inertia has the negative principal moment {} kg m^2",
                 joint.name,
                 name_list(&links),
                 moments[0]
-            )));
+            ))
+            .of(&format!("joint '{}'", joint.name)));
         }
     }
     Ok(())
@@ -65,7 +64,7 @@ fn principal_moments(inertia: Matrix3<f64>) -> Result<[f64; 3]> {
     let found = SymmetricEigen::try_new(inertia, f64::EPSILON, MOST_STEPS);
     let mut moments: [f64; 3] = found
         .map(|found| found.eigenvalues.into())
-        .ok_or_else(|| Error::Model("an inertia has no principal moments; check its magnitude".into()))?;
+        .ok_or_else(|| Error::model("an inertia has no principal moments; check its magnitude"))?;
     moments.sort_by(f64::total_cmp);
     Ok(moments)
 }

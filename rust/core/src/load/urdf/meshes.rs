@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::io::{Error as IoError, ErrorKind};
 use std::path::{absolute, Component, Path, PathBuf};
+use std::sync::Arc;
 
 use crate::error::{Error, Result};
 
@@ -43,7 +44,7 @@ impl MeshFinder {
         let lower = filename.to_lowercase();
         if !SUFFIXES.iter().any(|suffix| lower.ends_with(suffix)) {
             let supported = SUFFIXES.join(", ");
-            return Err(Error::Geometry(format!("{owner} is of an unknown kind; supported: {supported}")));
+            return Err(Error::geometry(format!("{owner} is of an unknown kind; supported: {supported}")));
         }
         let mut allowed = vec![self.folder.as_path()];
         for (_, folder) in &self.packages {
@@ -53,8 +54,10 @@ impl MeshFinder {
         }
         let mut inside = vec![];
         for candidate in self.candidates(filename, &owner)? {
-            let path = resolve(&candidate)
-                .map_err(|cause| Error::Geometry(format!("{owner} is not a usable file name: {cause}")))?;
+            let path = resolve(&candidate).map_err(|cause| {
+                let text = format!("{owner} is not a usable file name: {cause}");
+                Error::geometry(text).because(Some(Arc::new(cause)))
+            })?;
             if allowed.iter().any(|folder| path.starts_with(folder)) {
                 if path.is_file() {
                     return Ok(path);
@@ -62,7 +65,7 @@ impl MeshFinder {
                 inside.push(path);
             }
         }
-        Err(Error::Geometry(if inside.is_empty() {
+        Err(Error::geometry(if inside.is_empty() {
             format!(
                 "{owner} lies outside the folders it may come from, {}; move it there or add its folder to \
                  package_dirs",
@@ -80,7 +83,7 @@ impl MeshFinder {
             Some(parts) => parts,
         };
         if scheme != "package" {
-            return Err(Error::Geometry(format!(
+            return Err(Error::geometry(format!(
                 "{owner} has the unknown scheme '{scheme}://'; supported: package://, file://, a path"
             )));
         }

@@ -129,6 +129,10 @@ impl Default for UrdfOptions {
 /// ```
 pub fn from_urdf(path: impl AsRef<Path>, options: &UrdfOptions) -> Result<RobotDescription> {
     let path = path.as_ref();
+    read(path, options).map_err(|error| error.in_file(path))
+}
+
+fn read(path: &Path, options: &UrdfOptions) -> Result<RobotDescription> {
     if !options.gravity.iter().all(|x| x.is_finite()) {
         return Err(Error::input(
             "gravity",

@@ -5,7 +5,7 @@ use urdf_rs::{Geometry as Shape, Link};
 use super::build::pose;
 use super::meshes::MeshFinder;
 use super::UrdfGeometry;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::load::load_mesh;
 use crate::surface::{Geometry, Part};
 
@@ -32,11 +32,8 @@ fn geometry(shape: &Shape, link: &str, meshes: &MeshFinder) -> Result<Geometry> 
         Shape::Sphere { radius } => Geometry::Sphere { radius: *radius },
         Shape::Mesh { filename, scale } => {
             let path = meshes.find(filename, link)?;
-            let (vertices, triangles) =
-                load_mesh(&path, scale.map_or([1.0; 3], |scale| *scale)).map_err(|error| match error {
-                    Error::Geometry(text) => Error::Geometry(format!("link '{link}': {text}")),
-                    other => other,
-                })?;
+            let (vertices, triangles) = load_mesh(&path, scale.map_or([1.0; 3], |scale| *scale))
+                .map_err(|error| error.within(&format!("link '{link}'")))?;
             Geometry::Mesh { vertices, triangles }
         }
     })

@@ -32,9 +32,8 @@ pub(super) fn check_mass_matrix(description: &RobotDescription) -> Result<Option
     for turn in 0..3 {
         let matrix = robot.mass_matrix(&configuration(description, turn))?;
         if !matrix.iter().all(|x| x.is_finite()) {
-            return Err(Error::Model(
-                "the mass matrix is not finite; check the magnitudes of placements, masses and inertias"
-                    .into(),
+            return Err(Error::model(
+                "the mass matrix is not finite; check the magnitudes of placements, masses and inertias",
             ));
         }
         for (idle, null) in idle.iter_mut().zip(null_coordinates(&matrix)?) {
@@ -75,7 +74,7 @@ fn configuration(description: &RobotDescription, turn: u32) -> Vec<f64> {
 /// Coordinates that take part in a motion without kinetic energy.
 fn null_coordinates(matrix: &DMatrix<f64>) -> Result<Vec<bool>> {
     let indefinite =
-        || Error::Model("the mass matrix has a negative eigenvalue; check the masses and inertias".into());
+        || Error::model("the mass matrix has a negative eigenvalue; check the masses and inertias");
     let n = matrix.nrows();
     let diagonal = matrix.diagonal();
     if diagonal.min() < -NO_MOMENT {
@@ -89,7 +88,7 @@ fn null_coordinates(matrix: &DMatrix<f64>) -> Result<Vec<bool>> {
         }
     });
     let found = SymmetricEigen::try_new(scaled, f64::EPSILON, 1000 + 100 * n)
-        .ok_or_else(|| Error::Model("the mass matrix has no eigenvalues; check the inertias".into()))?;
+        .ok_or_else(|| Error::model("the mass matrix has no eigenvalues; check the inertias"))?;
     if found.eigenvalues.min() < -INDEFINITE_SHARE {
         return Err(indefinite());
     }

@@ -121,7 +121,9 @@ fn a_floating_base_carries_the_root_link() {
     assert!(free.links.iter().all(|link| link.joint > 0));
     let taken = arm().replace("rail", "root_joint");
     assert!(read(&taken, &UrdfOptions::default()).is_ok());
-    assert!(matches!(read(&taken, &options), Err(Error::Model(text)) if text.contains("'root_joint'")));
+    assert!(
+        matches!(read(&taken, &options), Err(Error::Model { problem: text, .. }) if text.contains("'root_joint'"))
+    );
 }
 
 #[test]
@@ -175,7 +177,10 @@ fn mesh_files_come_from_allowed_folders_only() {
         let urdf = Urdf::new(robot(&[link("a", &mesh)]).as_bytes());
         let refused = urdf.read(&UrdfOptions::default());
         let place = if name.starts_with("package") { "was not found" } else { "lies outside" };
-        assert!(matches!(&refused, Err(Error::Geometry(text)) if text.contains(place)), "{refused:?}");
+        assert!(
+            matches!(&refused, Err(Error::Geometry { problem: text, .. }) if text.contains(place)),
+            "{refused:?}"
+        );
         std::fs::create_dir_all(outside.0.join("pkg")).unwrap();
         std::fs::write(outside.0.join("pkg/part.stl"), STL).unwrap();
         let options = UrdfOptions { package_dirs: vec![outside.0.clone()], ..UrdfOptions::default() };
@@ -196,7 +201,10 @@ fn links_out_of_the_folder_are_followed_and_refused() {
     let urdf = Urdf::new(robot(&[link("a", mesh)]).as_bytes());
     std::os::unix::fs::symlink(outside.0.join("part.stl"), urdf.0.join("part.stl")).unwrap();
     let refused = urdf.read(&UrdfOptions::default());
-    assert!(matches!(&refused, Err(Error::Geometry(text)) if text.contains("lies outside")), "{refused:?}");
+    assert!(
+        matches!(&refused, Err(Error::Geometry { problem: text, .. }) if text.contains("lies outside")),
+        "{refused:?}"
+    );
 }
 
 #[test]
@@ -220,7 +228,10 @@ fn refusals_name_the_element() {
     ];
     for (text, message) in cases {
         let refused = read(&text, &UrdfOptions::default());
-        assert!(matches!(&refused, Err(Error::Model(said)) if said.contains(message)), "{refused:?}");
+        assert!(
+            matches!(&refused, Err(Error::Model { problem: said, .. }) if said.contains(message)),
+            "{refused:?}"
+        );
     }
 }
 
@@ -239,7 +250,7 @@ fn deep_and_growing_text_is_refused() {
         let deep = format!("<robot name='a'><link name='a'>{}", step.repeat(100_000));
         let refused = read(&deep, &UrdfOptions::default());
         assert!(
-            matches!(&refused, Err(Error::Model(text)) if text.contains("nested deeper")),
+            matches!(&refused, Err(Error::Model { problem: text, .. }) if text.contains("nested deeper")),
             "{step}: {refused:?}"
         );
     }
@@ -248,7 +259,10 @@ fn deep_and_growing_text_is_refused() {
     let growing =
         r#"<!DOCTYPE r [<!ENTITY a "x"><!ENTITY b "&a;&a;">]><robot name='&b;'><link name='a'/></robot>"#;
     let refused = read(growing, &UrdfOptions::default());
-    assert!(matches!(&refused, Err(Error::Model(text)) if text.contains("document type")), "{refused:?}");
+    assert!(
+        matches!(&refused, Err(Error::Model { problem: text, .. }) if text.contains("document type")),
+        "{refused:?}"
+    );
 }
 
 #[test]
@@ -263,7 +277,7 @@ fn text_in_other_encodings_is_read() {
     }
     let foreign = format!(r#"<?xml version="1.0" encoding="klingon"?>{text}"#);
     assert!(
-        matches!(read(&foreign, &UrdfOptions::default()), Err(Error::Model(said)) if said.contains("klingon"))
+        matches!(read(&foreign, &UrdfOptions::default()), Err(Error::Model { problem: said, .. }) if said.contains("klingon"))
     );
 }
 
@@ -322,7 +336,7 @@ proptest! {
         }
         match read(&robot(&[link(&written, "")]), &UrdfOptions::default()) {
             Ok(robot) => prop_assert_eq!(&robot.links[0].name, &name),
-            Err(error) => prop_assert!(matches!(error, Error::Model(_)), "{error}"),
+            Err(error) => prop_assert!(matches!(error, Error::Model { .. }), "{error}"),
         }
     }
 }

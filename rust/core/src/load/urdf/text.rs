@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::error::{Error, Result};
+use crate::load::problem::Problem;
 use crate::load::regular_file;
 
 /// Larger files are not read [bytes]: 20 times the largest URDF published.
@@ -11,16 +12,17 @@ const LARGEST_FILE: u64 = 1 << 24;
 /// The file's text, decoded as its byte order mark or XML declaration says.
 pub(super) fn read(path: &Path) -> Result<String> {
     let shown = path.display();
-    let bytes = regular_file::read(path, LARGEST_FILE)
-        .map_err(|cause| Error::Model(format!("cannot read the URDF file '{shown}': {cause}")))?;
-    decode(bytes).map_err(|cause| Error::Model(format!("'{shown}' is not XML: {cause}")))
+    let bytes = regular_file::read(path, LARGEST_FILE).map_err(|said| {
+        Error::model(format!("cannot read the URDF file '{shown}': {said}")).because(said.cause)
+    })?;
+    decode(bytes).map_err(|said| Error::model(format!("'{shown}' is not XML: {said}")).because(said.cause))
 }
 
-fn decode(bytes: Vec<u8>) -> std::result::Result<String, String> {
+fn decode(bytes: Vec<u8>) -> std::result::Result<String, Problem> {
     let utf16 = |unit: fn([u8; 2]) -> u16| {
         let (units, rest) = bytes[2..].as_chunks::<2>();
         let text = String::from_utf16(&units.iter().map(|&pair| unit(pair)).collect::<Vec<u16>>());
-        text.ok().filter(|_| rest.is_empty()).ok_or_else(|| "it is not valid UTF-16".to_owned())
+        text.ok().filter(|_| rest.is_empty()).ok_or_else(|| Problem::from("it is not valid UTF-16"))
     };
     if bytes.starts_with(&[0xff, 0xfe]) {
         return utf16(u16::from_le_bytes);
@@ -30,12 +32,14 @@ fn decode(bytes: Vec<u8>) -> std::result::Result<String, String> {
     }
     match encoding(&bytes).as_deref() {
         None | Some("utf-8" | "utf8" | "us-ascii" | "ascii") => {
-            let text = String::from_utf8(bytes).map_err(|cause| cause.to_string())?;
+            let text = String::from_utf8(bytes).map_err(Problem::from_error)?;
             Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
         }
         // Latin-1 is the first 256 characters of Unicode.
         Some("iso-8859-1" | "latin-1" | "latin1") => Ok(bytes.into_iter().map(char::from).collect()),
-        Some(other) => Err(format!("unknown encoding '{other}'; supported: UTF-8, UTF-16, ISO-8859-1")),
+        Some(other) => {
+            Err(format!("unknown encoding '{other}'; supported: UTF-8, UTF-16, ISO-8859-1").into())
+        }
     }
 }
 

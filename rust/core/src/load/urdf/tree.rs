@@ -40,18 +40,20 @@ impl Tree {
         for (number, joint) in robot.joints.iter().enumerate() {
             let end = |name: &String| {
                 links.get(name.as_str()).copied().ok_or_else(|| {
-                    Error::Model(format!(
+                    Error::model(format!(
                         "joint '{}' names the link '{name}', which the description does not have",
                         joint.name
                     ))
+                    .of(&format!("joint '{}'", joint.name))
                 })
             };
             let (parent, child) = (end(&joint.parent.link)?, end(&joint.child.link)?);
             if let Some(first) = parents[child].replace(&joint.parent.link) {
-                return Err(Error::Model(format!(
+                return Err(Error::model(format!(
                     "link '{}' has two parents, '{first}' and '{}'; the links must form a tree",
                     joint.child.link, joint.parent.link
-                )));
+                ))
+                .of(&format!("link '{}'", joint.child.link)));
             }
             children[parent].push((number, child));
         }
@@ -61,7 +63,7 @@ impl Tree {
         let roots: Vec<usize> = (0..parents.len()).filter(|link| parents[*link].is_none()).collect();
         if roots.len() > 1 {
             let names: Vec<&str> = roots.iter().map(|link| robot.links[*link].name.as_str()).collect();
-            return Err(Error::Model(format!(
+            return Err(Error::model(format!(
                 "the links must form one tree with one root; links without a parent: {}",
                 name_list(&names)
             )));
@@ -70,7 +72,7 @@ impl Tree {
         let tree = Self { visits, robot, without_inertial };
         let moving = tree.moving().count();
         if moving > MOST_JOINTS {
-            return Err(Error::Model(format!("{moving} joints move; supported: up to {MOST_JOINTS}")));
+            return Err(Error::model(format!("{moving} joints move; supported: up to {MOST_JOINTS}")));
         }
         Ok(tree)
     }
@@ -84,10 +86,11 @@ impl Tree {
     pub fn check_reserved_names(&self, floating_base: bool) -> Result<()> {
         for joint in &self.robot.joints {
             if joint.name == "universe" || floating_base && joint.name == ROOT_JOINT {
-                return Err(Error::Model(format!(
+                return Err(Error::model(format!(
                     "joint '{}' has a name that Pinocchio uses itself; rename it",
                     joint.name
-                )));
+                ))
+                .of(&format!("joint '{}'", joint.name)));
             }
         }
         Ok(())
@@ -106,7 +109,7 @@ fn index<'a>(what: &str, names: impl Iterator<Item = &'a str>) -> Result<HashMap
     if twice.is_empty() {
         return Ok(places);
     }
-    Err(Error::Model(format!("{what} names must be unique; given more than once: {}", name_list(&twice))))
+    Err(Error::model(format!("{what} names must be unique; given more than once: {}", name_list(&twice))))
 }
 
 fn visits(robot: &urdf_rs::Robot, roots: &[usize], children: &[Vec<(usize, usize)>]) -> Result<Vec<Visit>> {
@@ -116,7 +119,7 @@ fn visits(robot: &urdf_rs::Robot, roots: &[usize], children: &[Vec<(usize, usize
         roots.iter().map(|&link| (Visit { link, joint: None, parent: 0 }, 0)).collect();
     while let Some((visit, depth)) = ahead.pop() {
         if depth > LONGEST_CHAIN {
-            return Err(Error::Model(format!(
+            return Err(Error::model(format!(
                 "the chain of links down to '{}' is longer than {LONGEST_CHAIN}",
                 robot.links[visit.link].name
             )));
@@ -138,5 +141,5 @@ fn visits(robot: &urdf_rs::Robot, roots: &[usize], children: &[Vec<(usize, usize
     if cycle.is_empty() {
         return Ok(visits);
     }
-    Err(Error::Model(format!("the links must form a tree; these form a cycle: {}", name_list(&cycle))))
+    Err(Error::model(format!("the links must form a tree; these form a cycle: {}", name_list(&cycle))))
 }

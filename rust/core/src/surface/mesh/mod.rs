@@ -70,24 +70,24 @@ impl Mesh {
 
 fn check(vertices: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Result<()> {
     if vertices.is_empty() || triangles.is_empty() {
-        return Err(Error::Geometry(format!(
+        return Err(Error::geometry(format!(
             "mesh: {} vertices and {} triangles; it needs at least one triangle",
             vertices.len(),
             triangles.len()
         )));
     }
     if triangles.len() >= Child::MAX_TRIANGLES {
-        return Err(Error::Geometry(format!("mesh: {} triangles are too many", triangles.len())));
+        return Err(Error::geometry(format!("mesh: {} triangles are too many", triangles.len())));
     }
     if let Some(i) = vertices.iter().position(|v| !v.iter().all(|x| x.is_finite() && x.abs() < 1e15)) {
-        return Err(Error::Geometry(format!(
+        return Err(Error::geometry(format!(
             "mesh: vertex {i} is {:?}; it must be finite",
             vertices[i].as_slice()
         )));
     }
     let bad = triangles.iter().position(|t| t.iter().any(|&v| v as usize >= vertices.len()));
     if let Some(i) = bad {
-        return Err(Error::Geometry(format!(
+        return Err(Error::geometry(format!(
             "mesh: triangle {i} is {:?}, but there are only {} vertices",
             triangles[i],
             vertices.len()

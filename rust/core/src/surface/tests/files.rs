@@ -180,7 +180,7 @@ fn bad_files_are_named() {
     ];
     for file in files {
         match file.load() {
-            Err(Error::Geometry(message)) => {
+            Err(Error::Geometry { problem: message, .. }) => {
                 assert!(message.contains(file.0.to_str().unwrap()), "{message}");
                 assert!(message.contains(".stl, .obj, .dae"), "{message}");
             }

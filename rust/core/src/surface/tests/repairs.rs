@@ -167,7 +167,7 @@ fn unusable_meshes_are_refused() {
     ];
     for (mesh, why) in bad {
         match Surface::new(vec![part(&mesh)]) {
-            Err(Error::Geometry(message)) => assert!(message.contains(why), "{message}"),
+            Err(Error::Geometry { problem: message, .. }) => assert!(message.contains(why), "{message}"),
             other => panic!("{why}: {other:?}"),
         }
     }

@@ -17,7 +17,7 @@ fn doubled(levels: usize, leaf: &str) -> String {
 
 fn refused(text: &str, why: &str) {
     let error = collada::parse(text).unwrap_err();
-    assert!(error.contains(why), "{error}");
+    assert!(error.text.contains(why), "{error}");
 }
 
 #[test]

@@ -17,6 +17,7 @@ use super::guard::writer::{row, Writer};
 use super::numbers::{attribute, parse, Kind, LARGEST};
 use super::{text, UrdfGeometry};
 use crate::error::{Error, Result};
+use crate::load::problem::Problem;
 
 pub(super) const SUPPORTED_JOINTS: &str =
     "revolute, continuous, prismatic, fixed, and a free flyer as the root";
@@ -34,20 +35,20 @@ pub(super) struct Checked {
 pub(super) fn read(path: &Path, role: UrdfGeometry) -> Result<Checked> {
     let shown = path.display();
     let text = text::read(path)?;
-    let not_xml = |cause: String| Error::Model(format!("'{shown}' is not XML: {cause}"));
-    crate::load::xml_limits::check(&text).map_err(not_xml)?;
-    let document = Document::parse(&text).map_err(|cause| not_xml(cause.to_string()))?;
+    let not_xml = |said: Problem| Error::model(format!("'{shown}' is not XML: {said}")).because(said.cause);
+    crate::load::xml_limits::check(&text).map_err(|said| not_xml(said.into()))?;
+    let document = Document::parse(&text).map_err(|cause| not_xml(Problem::from_error(cause)))?;
     let root = document.root_element();
     if !is(root, "robot") {
         let tag = root.tag_name();
         let space = tag.namespace().map(|space| format!("{{{space}}}")).unwrap_or_default();
-        return Err(Error::Model(format!(
+        return Err(Error::model(format!(
             "'{shown}' is not a URDF: its root element is <{space}{}>, not <robot>",
             tag.name()
         )));
     }
     if child(root, "link").is_none() {
-        return Err(Error::Model(format!("'{shown}' has no links (a xacro file must be expanded first)")));
+        return Err(Error::model(format!("'{shown}' has no links (a xacro file must be expanded first)")));
     }
     let name = match root.attribute("name") {
         Some(name) if !name.is_empty() => name.to_owned(),
@@ -56,14 +57,15 @@ pub(super) fn read(path: &Path, role: UrdfGeometry) -> Result<Checked> {
     let mut clean = Clean { xml: Writer::default(), role, without_inertial: HashSet::new(), bad_shape: None };
     clean.xml.open("robot", &[("name", &name)]);
     for node in children(root, "link") {
-        clean.link(node)?;
+        clean.link(node).map_err(|error| error.of(&element(node)))?;
     }
     for node in children(root, "joint") {
-        clean.joint(node)?;
+        clean.joint(node).map_err(|error| error.of(&element(node)))?;
     }
     clean.xml.close("robot");
     let robot = urdf_rs::read_from_string(&clean.xml.text)
-        .map_err(|cause| Error::Model(format!("'{shown}' cannot be read: {cause}")))?;
+        .map_err(Problem::from_error)
+        .map_err(|said| Error::model(format!("'{shown}' cannot be read: {said}")).because(said.cause))?;
     check_names(root, &robot)?;
     let Clean { without_inertial, bad_shape, .. } = clean;
     Ok(Checked { robot: urdf_rs::Robot { name, ..robot }, without_inertial, bad_shape })
@@ -76,7 +78,7 @@ fn check_names(root: Node<'_, '_>, robot: &urdf_rs::Robot) -> Result<()> {
     let read = links.chain(robot.joints.iter().map(|joint| &joint.name));
     for (written, read) in written.zip(read) {
         if written != Some(read) {
-            return Err(Error::Model(format!("{written:?} cannot be a name; leave control characters out")));
+            return Err(Error::model(format!("{written:?} cannot be a name; leave control characters out")));
         }
     }
     Ok(())
@@ -94,6 +96,11 @@ fn child<'a, 'i>(node: Node<'a, 'i>, tag: &'static str) -> Option<Node<'a, 'i>> 
     children(node, tag).next()
 }
 
+/// A link or joint as messages name it.
+fn element(node: Node<'_, '_>) -> String {
+    format!("{} '{}'", node.tag_name().name(), node.attribute("name").unwrap_or_default())
+}
+
 /// The rewritten text.
 struct Clean {
     xml: Writer,
@@ -106,7 +113,7 @@ impl Clean {
     fn link(&mut self, node: Node<'_, '_>) -> Result<()> {
         let name = node.attribute("name").unwrap_or_default();
         if name.is_empty() {
-            return Err(Error::Model("a <link> has no name".into()));
+            return Err(Error::model("a <link> has no name"));
         }
         self.xml.open("link", &[("name", name)]);
         match child(node, "inertial") {
@@ -120,7 +127,7 @@ impl Clean {
             let before = self.xml.text.len();
             if let Err(error) = self.shape(shape, tag, &format!("link '{name}': <{tag}>")) {
                 self.xml.text.truncate(before);
-                self.bad_shape.get_or_insert(error);
+                self.bad_shape.get_or_insert(error.of(&element(node)));
             }
         }
         self.xml.close("link");
@@ -129,18 +136,18 @@ impl Clean {
 
     fn inertial(&mut self, node: Node<'_, '_>, owner: &str) -> Result<()> {
         let (Some(mass), Some(inertia)) = (child(node, "mass"), child(node, "inertia")) else {
-            return Err(Error::Model(format!("{owner}: <inertial> needs <mass> and <inertia>")));
+            return Err(Error::model(format!("{owner}: <inertial> needs <mass> and <inertia>")));
         };
         let keys = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
         let mut moments = Vec::with_capacity(6);
         for key in keys {
             // Products of inertia may be left out; URDF's default is zero.
             let default = if matches!(key, "ixx" | "iyy" | "izz") { None } else { Some(0.0) };
-            moments.push(row(&[attribute(inertia, key, owner, Error::Model, default, LARGEST)?]));
+            moments.push(row(&[attribute(inertia, key, owner, Error::model, default, LARGEST)?]));
         }
-        let mass = row(&[attribute(mass, "value", owner, Error::Model, None, LARGEST)?]);
+        let mass = row(&[attribute(mass, "value", owner, Error::model, None, LARGEST)?]);
         self.xml.open("inertial", &[]);
-        self.origin(node, owner, Error::Model)?;
+        self.origin(node, owner, Error::model)?;
         self.xml.empty("mass", &[("value", &mass)]);
         let moments: Vec<(&str, &str)> = keys.into_iter().zip(moments.iter().map(String::as_str)).collect();
         self.xml.empty("inertia", &moments);

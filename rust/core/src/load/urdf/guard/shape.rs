@@ -15,17 +15,17 @@ impl Clean {
             .map(|geometry| geometry.children().filter(Node::is_element).collect())
             .unwrap_or_default();
         let &[shape] = shapes.as_slice() else {
-            return Err(Error::Geometry(format!("{owner} needs one <geometry> with one of {SHAPES}")));
+            return Err(Error::geometry(format!("{owner} needs one <geometry> with one of {SHAPES}")));
         };
         self.xml.open(tag, &[]);
-        self.origin(node, owner, Error::Geometry)?;
+        self.origin(node, owner, Error::geometry)?;
         self.xml.open("geometry", &[]);
         match shape.tag_name().name() {
             _ if shape.tag_name().namespace().is_some() => return Err(unknown_shape(shape, owner)),
             "mesh" => self.mesh(shape, owner)?,
             "box" => {
                 let text = shape.attribute("size").unwrap_or_default();
-                let size = parse::<3>(text, &format!("{owner}: 'size' of <box>"), Error::Geometry, LARGEST)?;
+                let size = parse::<3>(text, &format!("{owner}: 'size' of <box>"), Error::geometry, LARGEST)?;
                 check_positive(&size, "box", owner)?;
                 self.xml.empty("box", &[("size", &row(&size))]);
             }
@@ -42,7 +42,7 @@ impl Clean {
         let tag = node.tag_name().name();
         let mut values = Vec::with_capacity(keys.len());
         for key in keys {
-            values.push(attribute(node, key, owner, Error::Geometry, None, LARGEST)?);
+            values.push(attribute(node, key, owner, Error::geometry, None, LARGEST)?);
         }
         check_positive(&values, tag, owner)?;
         let words: Vec<String> = values.iter().map(|value| row(&[*value])).collect();
@@ -54,12 +54,12 @@ impl Clean {
     fn mesh(&mut self, node: Node<'_, '_>, owner: &str) -> Result<()> {
         let filename = node.attribute("filename").unwrap_or_default().trim();
         if filename.is_empty() {
-            return Err(Error::Geometry(format!("{owner}: <mesh> needs the attribute 'filename'")));
+            return Err(Error::geometry(format!("{owner}: <mesh> needs the attribute 'filename'")));
         }
         let text = node.attribute("scale").unwrap_or("1 1 1");
-        let scale = parse::<3>(text, &format!("{owner}: 'scale' of <mesh>"), Error::Geometry, LARGEST)?;
+        let scale = parse::<3>(text, &format!("{owner}: 'scale' of <mesh>"), Error::geometry, LARGEST)?;
         if scale.contains(&0.0) {
-            return Err(Error::Geometry(format!(
+            return Err(Error::geometry(format!(
                 "{owner}: 'scale' of <mesh> must not be zero, not '{text}'"
             )));
         }
@@ -69,7 +69,7 @@ impl Clean {
 }
 fn unknown_shape(node: Node<'_, '_>, owner: &str) -> Error {
     let tag = node.tag_name().name();
-    Error::Geometry(format!("{owner} has the unknown shape <{tag}>; supported: {SHAPES}"))
+    Error::geometry(format!("{owner} has the unknown shape <{tag}>; supported: {SHAPES}"))
 }
 
 fn check_positive(sizes: &[f64], tag: &str, owner: &str) -> Result<()> {
@@ -77,5 +77,5 @@ fn check_positive(sizes: &[f64], tag: &str, owner: &str) -> Result<()> {
         return Ok(());
     }
     let shown: Vec<String> = sizes.iter().map(f64::to_string).collect();
-    Err(Error::Geometry(format!("{owner}: the sizes of <{tag}> must be positive, not {}", shown.join(", "))))
+    Err(Error::geometry(format!("{owner}: the sizes of <{tag}> must be positive, not {}", shown.join(", "))))
 }

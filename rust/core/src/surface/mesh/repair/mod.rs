@@ -44,8 +44,8 @@ pub(crate) fn repair(
     let double = components::remove_duplicates(&mut triangles);
     say(remarks, double, "duplicate triangle removed", "duplicate triangles removed");
     if triangles.is_empty() {
-        return Err(Error::Geometry(
-            "mesh: nothing is left once degenerate and duplicate triangles are removed".into(),
+        return Err(Error::geometry(
+            "mesh: nothing is left once degenerate and duplicate triangles are removed",
         ));
     }
 
