@@ -83,7 +83,7 @@ fn closest_points(c: &mut Criterion) {
         group.bench_function("closest point, 3 mm off", |b| {
             b.iter(|| queries.iter().map(|p| black_box(surface.closest_point(p)).distance).sum::<f64>())
         });
-        let hints: Vec<i64> = queries.iter().map(|p| surface.closest_point(p).triangle).collect();
+        let hints: Vec<Option<u32>> = queries.iter().map(|p| surface.closest_point(p).triangle).collect();
         group.bench_function("closest point, 3 mm off, warm start", |b| {
             b.iter(|| {
                 let pairs = queries.iter().zip(&hints);

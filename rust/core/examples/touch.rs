@@ -43,13 +43,13 @@ fn main() -> Result<()> {
     let isolation = isolator.isolate(&q, tau_ext.as_slice())?;
     println!("pushed: {} at {:.4?} m", robot.links()[link].name, point.as_slice());
     for contact in &isolation.contacts {
-        println!(
-            "found:  {} at {:.4?} m, {:.2} N{}",
-            robot.links()[contact.link].name,
-            contact.point.as_slice(),
-            contact.force.norm(),
-            if contact.located { "" } else { " (the link is known, the point is not)" }
-        );
+        let name = &robot.links()[contact.link].name;
+        match (contact.place, contact.force()) {
+            (Some(place), Some(force)) if contact.located => {
+                println!("found:  {name} at {:.4?} m, {:.2} N", place.point.as_slice(), force.norm());
+            }
+            _ => println!("found:  {name}; the link is known, the point is not"),
+        }
     }
     Ok(())
 }

@@ -3,7 +3,9 @@
 use std::borrow::Cow;
 use std::error::Error as StdError;
 use std::fmt;
-use std::path::{Path, PathBuf};
+#[cfg(feature = "mesh-files")]
+use std::path::Path;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// What went wrong. The message names the thing and says what would be right.
@@ -91,7 +93,7 @@ impl Error {
 
     /// The same of an element that the message names already, where no element is known yet.
     #[must_use]
-    pub fn of(mut self, owner: &str) -> Self {
+    pub(crate) fn of(mut self, owner: &str) -> Self {
         if let Error::Model { element, .. } | Error::Geometry { element, .. } = &mut self {
             element.get_or_insert_with(|| owner.to_owned());
         }
@@ -109,8 +111,9 @@ impl Error {
     }
 
     /// The same in a file, where no file is known yet.
+    #[cfg(feature = "mesh-files")]
     #[must_use]
-    pub fn in_file(mut self, file: &Path) -> Self {
+    pub(crate) fn in_file(mut self, file: &Path) -> Self {
         if let Error::Model { path, .. } | Error::Geometry { path, .. } = &mut self {
             path.get_or_insert_with(|| file.to_owned());
         }
@@ -118,6 +121,7 @@ impl Error {
     }
 
     /// The same with its source.
+    #[cfg(feature = "mesh-files")]
     #[must_use]
     pub(crate) fn because(mut self, cause: Option<Cause>) -> Self {
         if let Error::Model { source, .. } | Error::Geometry { source, .. } = &mut self {

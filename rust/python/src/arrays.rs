@@ -52,8 +52,8 @@ impl Vector {
     }
 }
 
-/// Sensor readings `(n, 6)`; NaN, for no reading, is let through.
-pub struct Readings(Vec<[f64; 6]>);
+/// Sensor readings `(n, 6)`; a NaN says that there is none.
+pub struct Readings(Vec<Option<[f64; 6]>>);
 
 impl Readings {
     pub fn new(object: &Bound<'_, PyAny>) -> PyResult<Self> {
@@ -66,12 +66,19 @@ impl Readings {
             let converted = convert("wrenches", object)?;
             copied = copy_rows(converted.cast().map_err(|_| wrong())?)?;
         }
-        copied.map(Self).ok_or_else(wrong)
+        let rows = copied.ok_or_else(wrong)?;
+        Ok(Self(rows.into_iter().map(reading).collect()))
     }
 
-    pub fn rows(&self) -> &[[f64; 6]] {
+    pub fn rows(&self) -> &[Option<[f64; 6]>] {
         &self.0
     }
+}
+
+/// A NaN leaves its sensor out, unless the row is refused for another number.
+fn reading(row: [f64; 6]) -> Option<[f64; 6]> {
+    let none = row.iter().any(|x| x.is_nan()) && !row.iter().any(|x| x.abs() >= LARGEST);
+    (!none).then_some(row)
 }
 
 /// The numbers of a vector; `None` where they are strided, or unaligned as a field of a packed record is.

@@ -29,16 +29,17 @@ impl Columns {
         reserve(&mut self.triangles, more)
     }
 
-    /// Column by column: much faster than row by row. `read` gives point, normal and triangle.
+    /// Column by column: much faster than row by row. `read` gives point, normal and triangle, which is -1 in NumPy if there is
+    /// none.
     pub fn extend<T>(
         &mut self,
         rows: &[T],
-        read: impl Fn(&T) -> (&Vector3<f64>, &Vector3<f64>, i64),
+        read: impl Fn(&T) -> (&Vector3<f64>, &Vector3<f64>, Option<u32>),
     ) -> PyResult<()> {
         self.reserve(rows.len())?;
         self.points.extend(rows.iter().map(|row| <[f64; 3]>::from(*read(row).0)));
         self.normals.extend(rows.iter().map(|row| <[f64; 3]>::from(*read(row).1)));
-        self.triangles.extend(rows.iter().map(|row| read(row).2));
+        self.triangles.extend(rows.iter().map(|row| read(row).2.map_or(-1, i64::from)));
         Ok(())
     }
 

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use crate::arguments::{robot, sole};
 use crate::arrays::{Readings, Vector};
 use crate::errors::to_python;
-use crate::returned::from_rows;
+use crate::returned::wrench_rows;
 use crate::robot::PyRobot;
 use crate::sensor::sensors;
 
@@ -47,7 +47,7 @@ impl PyLoadCompensator {
         let wrenches = Readings::new(wrenches)?;
         let mut compensator = sole(py, "LoadCompensator", &self.0)?;
         match compensator.update(q.slice(), v.slice(), a.slice(), wrenches.rows()) {
-            Ok(external) => from_rows(py, external.iter().map(|wrench| (*wrench).into())),
+            Ok(external) => wrench_rows(py, external),
             Err(error) => Err(to_python(py, error)),
         }
     }

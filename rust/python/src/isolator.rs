@@ -14,6 +14,7 @@ use crate::arguments::{pushing, robot, sole, whole, Number};
 use crate::arrays::{Readings, Vector};
 use crate::errors::to_python;
 use crate::observer::scalar_or_vector;
+use crate::returned::vector;
 use crate::robot::PyRobot;
 use crate::sensor::{sensor_names, sensors, wrench_thresholds};
 
@@ -76,31 +77,31 @@ impl PyContact {
     /// `(3,)`, world frame [m].
     #[getter]
     fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.contact.point.as_slice())
+        vector(py, self.contact.place.map(|place| place.point))
     }
 
     /// `(3,)`, link frame [m].
     #[getter]
     fn point_local<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.contact.point_local.as_slice())
+        vector(py, self.contact.place.map(|place| place.point_local))
     }
 
     /// Force on the robot, `(3,)`, world frame [N].
     #[getter]
     fn force<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.contact.force.as_slice())
+        vector(py, self.contact.force())
     }
 
     /// Outward surface normal at the point, `(3,)`, world frame.
     #[getter]
     fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.contact.normal.as_slice())
+        vector(py, self.contact.place.map(|place| place.normal))
     }
 
     /// Force and moment on the robot at the link's origin, `(6,)`, world axes [N, Nm].
     #[getter]
     fn wrench<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.contact.wrench.as_slice())
+        vector(py, self.contact.wrench)
     }
 
     /// What saw it: "joint torques", or the sensor's name.
@@ -123,7 +124,7 @@ impl PyContact {
     /// as those of a wrong payload, are not.
     #[getter]
     fn point_std(&self) -> f64 {
-        self.contact.point_std
+        self.contact.place.map_or(f64::NAN, |place| place.std)
     }
 
     /// Whether redundant torques agree with the contacts reported. False where they do not, and where there are as many
@@ -147,11 +148,13 @@ impl PyContact {
     }
 
     fn __repr__(&self) -> String {
-        let (link, p, f) = (self.link(), &self.contact.point, self.contact.force.norm());
-        if self.contact.located {
-            format!("Contact('{link}', point=[{:.4}, {:.4}, {:.4}], |force|={f:.3} N)", p.x, p.y, p.z)
-        } else {
-            format!("Contact('{link}', located=False)")
+        let link = self.link();
+        match (self.contact.place, self.contact.force()) {
+            (Some(place), Some(force)) if self.contact.located => {
+                let (p, f) = (place.point, force.norm());
+                format!("Contact('{link}', point=[{:.4}, {:.4}, {:.4}], |force|={f:.3} N)", p.x, p.y, p.z)
+            }
+            _ => format!("Contact('{link}', located=False)"),
         }
     }
 }
@@ -257,7 +260,7 @@ pub struct PyContactIsolator {
 
 struct State {
     isolator: ContactIsolator,
-    wrenches: Vec<Vector6<f64>>,
+    wrenches: Vec<Option<Vector6<f64>>>,
 }
 
 #[pymethods]
@@ -319,7 +322,7 @@ impl PyContactIsolator {
         let mut state = sole(py, "ContactIsolator", &self.state)?;
         let State { isolator, wrenches } = &mut *state;
         wrenches.clear();
-        wrenches.extend(given.iter().map(|row| Vector6::from(*row)));
+        wrenches.extend(given.iter().map(|row| row.map(Vector6::from)));
         let isolation = isolator.isolate_sensed(q.slice(), tau_ext.slice(), wrenches);
         let isolation = isolation.map_err(|error| to_python(py, error))?.clone();
         Ok(PyIsolation { robot: self.robot.clone(), sensors: self.sensors.clone(), isolation })

@@ -13,7 +13,7 @@ use crate::arrays::{Readings, Vector};
 use crate::errors::to_python;
 use crate::isolator::{contact_count, contacts, names};
 use crate::observer::scalar_or_vector;
-use crate::returned::from_rows;
+use crate::returned::wrench_rows;
 use crate::robot::PyRobot;
 use crate::sensor::{sensor_names, sensors, wrench_thresholds};
 
@@ -75,7 +75,7 @@ impl PyContactReport {
     /// origin; NaN where a sensor is left out.
     #[getter]
     fn wrenches<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        from_rows(py, self.report.wrenches.iter().map(|wrench| (*wrench).into()))
+        wrench_rows(py, &self.report.wrenches)
     }
 
     /// Names of the sensors without a reading in this tick.

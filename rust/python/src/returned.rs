@@ -1,6 +1,6 @@
 //! Arrays that are returned, and memory for them.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, SVector, Vector6};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
@@ -37,4 +37,17 @@ pub fn pose<'py>(py: Python<'py>, pose: &contactsense::spatial::Pose) -> PyResul
     let (r, t) = (&pose.rotation, &pose.translation);
     let row = |i: usize| [r[(i, 0)], r[(i, 1)], r[(i, 2)], t[i]];
     from_rows(py, [row(0), row(1), row(2), [0.0, 0.0, 0.0, 1.0]].into_iter())
+}
+
+/// A fresh `(N,)` array; NaN where there is no vector.
+pub fn vector<const N: usize>(py: Python<'_>, vector: Option<SVector<f64, N>>) -> Bound<'_, PyArray1<f64>> {
+    PyArray1::from_slice(py, vector.unwrap_or_else(|| SVector::repeat(f64::NAN)).as_slice())
+}
+
+/// A fresh `(n, 6)` array of wrenches; NaN where there is none.
+pub fn wrench_rows<'py>(
+    py: Python<'py>,
+    wrenches: &[Option<Vector6<f64>>],
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    from_rows(py, wrenches.iter().map(|wrench| wrench.map_or([f64::NAN; 6], Into::into)))
 }

@@ -9,7 +9,7 @@ use super::gate::{check_hold_time, check_threshold, check_wrench_threshold, is_o
 use super::signal_tree::{Signal, SignalTree};
 use crate::error::Result;
 use crate::robot::Robot;
-use crate::sensor::{is_known, SensorTree};
+use crate::sensor::SensorTree;
 
 /// The signals of joints and sensors, and the links that they leave for a contact.
 #[derive(Debug, Clone)]
@@ -57,14 +57,14 @@ impl Detector {
         })
     }
 
-    /// One tick of `dt` (s) with the external torque `(nv,)`, finite, and the external wrenches that the sensors see, NaN
-    /// where one is left out; none without sensors. A sensor over its threshold says that the contact is behind it, one
+    /// One tick of `dt` (s) with the external torque `(nv,)`, finite, and the external wrenches that the sensors see, none
+    /// where one is left out; empty without sensors. A sensor over its threshold says that the contact is behind it, one
     /// under it that it is not.
-    pub fn update(&mut self, external_torque: &[f64], wrenches: &[Vector6<f64>], dt: f64) {
+    pub fn update(&mut self, external_torque: &[f64], wrenches: &[Option<Vector6<f64>>], dt: f64) {
         let before = self.collision;
         for (sensor, wrench) in wrenches.iter().enumerate() {
             self.wrench_size[sensor] = self.size(sensor, wrench);
-            self.is_known[sensor] = is_known(wrench);
+            self.is_known[sensor] = wrench.is_some();
         }
         let on_joints = self.joints.update(external_torque, dt);
         let on_sensors = self.sensors.update(&self.wrench_size[..wrenches.len()], dt);
@@ -79,12 +79,17 @@ impl Detector {
     }
 
     /// A wrench's largest component, in thresholds; zero where the sensor is left out.
-    fn size(&self, sensor: usize, wrench: &Vector6<f64>) -> f64 {
+    fn size(&self, sensor: usize, wrench: &Option<Vector6<f64>>) -> f64 {
+        let Some(wrench) = wrench else { return 0.0 };
         wrench.abs().component_div(&self.wrench_threshold[sensor]).iter().copied().fold(0.0, f64::max)
     }
 
     /// Whether a torque `(nv,)` or a wrench is over its threshold, whatever was before.
-    pub fn any_over(&self, torque: impl IntoIterator<Item = f64>, wrenches: &[Vector6<f64>]) -> [bool; 2] {
+    pub fn any_over(
+        &self,
+        torque: impl IntoIterator<Item = f64>,
+        wrenches: &[Option<Vector6<f64>>],
+    ) -> [bool; 2] {
         let mut sizes = wrenches.iter().enumerate().map(|(sensor, wrench)| self.size(sensor, wrench));
         [self.joints.any_over(torque), sizes.any(|size| is_over(size, 1.0))]
     }

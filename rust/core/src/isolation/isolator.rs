@@ -57,7 +57,7 @@ pub(super) const LEFT_OVER: f64 = 0.05;
 /// let isolation = isolator.isolate(&q, tau_ext.as_slice())?;
 /// assert_eq!(isolation.contacts.len(), 1);
 /// assert_eq!(isolation.contacts[0].link, link);
-/// assert!((isolation.contacts[0].force - force).norm() < 1e-6);
+/// assert!((isolation.contacts[0].force().unwrap() - force).norm() < 1e-6);
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -153,7 +153,7 @@ impl ContactIsolator {
     }
 
     /// The same with the external wrench that each sensor sees, as [`crate::sensor::LoadCompensator`] gives it: (force,
-    /// moment) at the sensor's origin, world axes (N, Nm). A wrench with a NaN leaves its sensor out.
+    /// moment) at the sensor's origin, world axes (N, Nm). A sensor without a wrench is left out.
     ///
     /// # Errors
     /// [`Error::Input`] names the argument.
@@ -161,7 +161,7 @@ impl ContactIsolator {
         &mut self,
         q: &[f64],
         tau_ext: &[f64],
-        wrenches: &[Vector6<f64>],
+        wrenches: &[Option<Vector6<f64>>],
     ) -> Result<&Isolation> {
         self.robot.check_configuration(q)?;
         self.robot.check_tangent("tau_ext", tau_ext)?;
@@ -178,7 +178,7 @@ impl ContactIsolator {
         &mut self,
         kinematics: &Kinematics,
         tau_ext: &[f64],
-        wrenches: &[Vector6<f64>],
+        wrenches: &[Option<Vector6<f64>>],
         lagged: Option<&WrenchObserver>,
     ) -> &Isolation {
         self.isolation.clear();
@@ -354,7 +354,7 @@ impl ContactIsolator {
     }
 }
 
-fn check_wrenches(tree: &SensorTree, wrenches: &[Vector6<f64>]) -> Result<()> {
+fn check_wrenches(tree: &SensorTree, wrenches: &[Option<Vector6<f64>>]) -> Result<()> {
     if wrenches.len() != tree.len() {
         return Err(Error::input(
             "wrenches",
@@ -362,7 +362,8 @@ fn check_wrenches(tree: &SensorTree, wrenches: &[Vector6<f64>]) -> Result<()> {
         ));
     }
     for (name, wrench) in tree.names().iter().zip(wrenches) {
-        if let Some(value) = wrench.iter().find(|x| x.is_infinite() || x.abs() > crate::robot::LARGEST) {
+        let Some(wrench) = wrench else { continue };
+        if let Some(value) = wrench.iter().find(|x| x.is_nan() || x.abs() > crate::robot::LARGEST) {
             return Err(Error::input(
                 "wrenches",
                 format!("that of '{name}' has {value}; give finite numbers [N, Nm], or NaN to leave it out"),

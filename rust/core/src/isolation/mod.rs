@@ -28,4 +28,4 @@ mod wrench;
 
 pub use isolator::ContactIsolator;
 pub use options::IsolatorOptions;
-pub use result::{Candidate, Contact, Isolation};
+pub use result::{Candidate, Contact, ContactPlace, Isolation};

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::force::{explain_force, identify_force};
 use super::found::Found;
 use super::isolator::{ContactIsolator, CONTRADICTION};
-use super::result::{Candidate, Contact};
+use super::result::{Candidate, Contact, ContactPlace};
 use super::wrench::{WrenchEstimate, ORIGIN};
 use crate::math::chi_square::upper_limit;
 use crate::robot::jacobian::for_each_column;
@@ -50,7 +50,7 @@ impl ContactIsolator {
         self.isolation.rank_deficit += self.several.rank_deficit;
         // Several forces share the redundant torques: what is not sharp may as well be the others' doing.
         for contact in &mut self.isolation.contacts[first..] {
-            contact.located &= contact.point_std < SHARP;
+            contact.located &= contact.place.is_some_and(|place| place.std < SHARP);
             contact.verified &= verified;
         }
         // Tolerances are wider than the thresholds; what contradicts those is not located.
@@ -160,9 +160,8 @@ impl ContactIsolator {
         let end = self.isolation.candidates.len();
         if let Some(contact) = self.isolation.contacts.last_mut() {
             let origin = kinematics.link_pose(&self.robot, contact.link).translation - kinematics.origin;
-            contact.force = wrench.force;
             let moment = wrench.moment + wrench.force.cross(&origin);
-            contact.wrench = stack(&wrench.force, &moment);
+            contact.wrench = Some(stack(&wrench.force, &moment));
             contact.candidates.end = end;
         }
     }
@@ -223,12 +222,13 @@ fn contact_at(
 ) -> Contact {
     let pose = kinematics.link_pose(robot, hit.link);
     Contact {
-        point: hit.point,
-        point_local: pose.inverse_transform_point(&hit.point),
-        normal: hit.normal,
-        force: *force,
-        wrench: stack(force, &(hit.point - pose.translation).cross(force)),
-        point_std,
+        place: Some(ContactPlace {
+            point: hit.point,
+            point_local: pose.inverse_transform_point(&hit.point),
+            normal: hit.normal,
+            std: point_std,
+        }),
+        wrench: Some(stack(force, &(hit.point - pose.translation).cross(force))),
         ..Contact::unlocated(hit.link)
     }
 }

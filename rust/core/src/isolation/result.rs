@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use nalgebra::{Vector3, Vector6};
 
+use crate::spatial::vector::split;
+
 /// A place where the line of action meets a surface.
 ///
 /// ```
@@ -40,7 +42,42 @@ pub struct Candidate {
     pub distance: f64,
 }
 
-/// One contact. Vectors that the data do not determine are NaN.
+/// The place of a contact on its link.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::isolation::{ContactIsolator, IsolatorOptions};
+/// use contactsense::robot::Robot;
+///
+/// let robot = Arc::new(Robot::example_arm());
+/// let mut isolator = ContactIsolator::new(robot.clone(), &IsolatorOptions::default())?;
+/// // A push on the side of the last link.
+/// let (q, link) = ([0.3, 0.8, -0.4, 0.9, 0.5, 0.7, 0.0], robot.link("link_7")?);
+/// let pose = robot.link_pose(&q, link)?;
+/// let point = pose.transform_point(&[0.05, 0.0, 0.1].into());
+/// let jacobian = robot.jacobian(&q, link, Some(point.into()))?;
+/// let tau_ext = jacobian.rows(0, 3).transpose() * (pose.rotation * nalgebra::Vector3::new(-20.0, 0.0, 0.0));
+/// let isolation = isolator.isolate(&q, tau_ext.as_slice())?;
+/// let place = isolation.contacts[0].place.expect("seven joints determine it");
+/// assert!((place.point - point).norm() < 1e-6 && (place.point_local.z - 0.1).abs() < 1e-6);
+/// assert!((place.normal - pose.rotation.column(0)).norm() < 1e-6);
+/// # Ok::<(), contactsense::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactPlace {
+    /// Point of contact, world frame (m).
+    pub point: Vector3<f64>,
+    /// The same in the link frame (m).
+    pub point_local: Vector3<f64>,
+    /// Outward surface normal at the point, world frame.
+    pub normal: Vector3<f64>,
+    /// Standard deviation of the point (m). The standard deviation of a torque is taken as a third of its threshold, and
+    /// as more where the torques contradict one force. Other places that explain the torques as well are included.
+    pub std: f64,
+}
+
+/// One contact: what the data determine of it.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -54,31 +91,23 @@ pub struct Candidate {
 /// let isolation = isolator.isolate(&[0.4; 7], &[1.0, 2.0, 0.5, 0.0, 0.0, 0.0, 0.0])?;
 /// let contact = &isolation.contacts[0];
 /// assert_eq!(contact.link, robot.link("link_3")?);
-/// assert!(!contact.located && contact.point.x.is_nan());
+/// assert!(!contact.located && contact.place.is_none() && contact.wrench.is_none());
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
     /// Index into [`crate::robot::Robot::links`].
     pub link: usize,
-    /// Point of contact, world frame (m).
-    pub point: Vector3<f64>,
-    /// The same in the link frame (m).
-    pub point_local: Vector3<f64>,
-    /// Force on the robot, world frame (N).
-    pub force: Vector3<f64>,
-    /// Outward surface normal at the point, world frame.
-    pub normal: Vector3<f64>,
-    /// Wrench (force, moment) on the robot at the link's origin, world axes (N, Nm).
-    pub wrench: Vector6<f64>,
+    /// Where on the link; none if only the link is known.
+    pub place: Option<ContactPlace>,
+    /// Wrench (force, moment) on the robot at the link's origin, world axes (N, Nm); none if only the link is known. It may
+    /// be known where the place is not.
+    pub wrench: Option<Vector6<f64>>,
     /// The sensor that saw it, an index into the sensors given; none: the joint torques.
     pub source: Option<usize>,
     /// Whether 90 % of the places that explain the torques lie within [`super::IsolatorOptions::locate_within`] of the
     /// point. If not, the link may be known, the point is not.
     pub located: bool,
-    /// Standard deviation of the point (m). The standard deviation of a torque is taken as a third of its threshold, and
-    /// as more where the torques contradict one force. Other places that explain the torques as well are included.
-    pub point_std: f64,
     /// Whether redundant torques agree with the contacts reported. Where nothing is redundant (as many torques as
     /// unknowns), nothing checks the assumption that each contact is one force without moment.
     pub verified: bool,
@@ -88,20 +117,20 @@ pub struct Contact {
 
 impl Contact {
     pub(super) fn unlocated(link: usize) -> Self {
-        let unknown = Vector3::repeat(f64::NAN);
         Self {
             link,
-            point: unknown,
-            point_local: unknown,
-            force: unknown,
-            normal: unknown,
-            wrench: Vector6::repeat(f64::NAN),
+            place: None,
+            wrench: None,
             source: None,
             located: false,
-            point_std: f64::NAN,
             verified: false,
             candidates: 0..0,
         }
+    }
+
+    /// Force on the robot, world frame (N); none where the wrench is not known.
+    pub fn force(&self) -> Option<Vector3<f64>> {
+        self.wrench.map(|wrench| split(&wrench).0)
     }
 }
 

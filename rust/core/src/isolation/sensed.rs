@@ -12,7 +12,7 @@ use crate::detection::is_over;
 use crate::observer::WrenchObserver;
 use crate::robot::jacobian::jacobian_column;
 use crate::robot::Kinematics;
-use crate::sensor::{is_known, sensor_torque};
+use crate::sensor::sensor_torque;
 use crate::spatial::vector::{split, stack};
 
 /// Moment along the force that rounding leaves [tolerances].
@@ -25,7 +25,7 @@ impl ContactIsolator {
         &mut self,
         kinematics: &Kinematics,
         torque: &[f64],
-        wrenches: &[Vector6<f64>],
+        wrenches: &[Option<Vector6<f64>>],
         lagged: Option<&WrenchObserver>,
     ) {
         self.residual.copy_from_slice(torque);
@@ -34,9 +34,10 @@ impl ContactIsolator {
         let power = if wrenches.is_empty() { 1 } else { 2 };
         limit.iter_mut().zip(&self.threshold).for_each(|(limit, threshold)| *limit = threshold.powi(power));
         active.clear();
-        active.extend(wrenches.iter().map(is_known));
+        active.extend(wrenches.iter().map(Option::is_some));
         regions.set_active(robot, active);
-        for (sensor, wrench) in wrenches.iter().enumerate().filter(|(sensor, _)| active[*sensor]) {
+        for (sensor, wrench) in wrenches.iter().enumerate() {
+            let Some(wrench) = wrench else { continue };
             let explained = match lagged {
                 Some(lagged) => lagged.lagged_torque(sensor),
                 None => {
@@ -70,13 +71,14 @@ impl ContactIsolator {
         &mut self,
         kinematics: &Kinematics,
         sensor: usize,
-        wrenches: &[Vector6<f64>],
+        wrenches: &[Option<Vector6<f64>>],
     ) {
         let regions = &self.regions;
-        if !self.active[sensor] || regions.wanted[sensor] || regions.behind[sensor].unknown {
+        let Some(wrench) = wrenches[sensor].filter(|_| !regions.wanted[sensor]) else { return };
+        if regions.behind[sensor].unknown {
             return;
         }
-        let (root, spread) = self.left_over(kinematics, sensor, wrenches);
+        let (root, spread) = self.left_over(kinematics, sensor, wrench, wrenches);
         let over =
             |share: f64| (0..6).any(|i| is_over(root.value[i], root.threshold[i].max(share * spread[i])));
         if !over(0.0) {
@@ -90,26 +92,25 @@ impl ContactIsolator {
         std::mem::swap(&mut self.region, &mut self.regions.behind[sensor]);
     }
 
-    /// A sensor's wrench less those of the next sensors behind it (eq. 27), and how large the parts are.
+    /// A sensor's wrench `value` less those of the next sensors behind it (eq. 27), and how large the parts are.
     fn left_over(
         &self,
         kinematics: &Kinematics,
         sensor: usize,
-        wrenches: &[Vector6<f64>],
+        mut value: Vector6<f64>,
+        wrenches: &[Option<Vector6<f64>>],
     ) -> (Root, Vector6<f64>) {
         let tree = &self.regions.tree;
         let position = tree.position(kinematics, sensor);
-        let mut value = wrenches[sensor];
         let mut squares = value.component_mul(&value);
         let own = &self.wrench_threshold[sensor];
         let mut limits = own.component_mul(own);
-        for other in
-            (0..tree.len()).filter(|other| self.active[*other] && tree.parent(*other) == Some(sensor))
-        {
-            let (force, moment) = split(&wrenches[other]);
+        for (other, wrench) in wrenches.iter().enumerate() {
+            let Some(wrench) = wrench.filter(|_| tree.parent(other) == Some(sensor)) else { continue };
+            let (force, moment) = split(&wrench);
             let arm = tree.position(kinematics, other) - position;
             value -= stack(&force, &(moment + arm.cross(&force)));
-            squares += moved_squares(&wrenches[other], &arm);
+            squares += moved_squares(&wrench, &arm);
             limits += moved_squares(&self.wrench_threshold[other], &arm);
         }
         let (spread, limits) = (squares.map(f64::sqrt), limits.map(f64::sqrt));

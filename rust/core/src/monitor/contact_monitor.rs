@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::isolation::ContactIsolator;
 use crate::observer::{check_time_step, MomentumObserver, Step};
 use crate::robot::Robot;
-use crate::sensor::{is_known, SensorTree};
+use crate::sensor::SensorTree;
 
 /// The sense of touch of one robot, called once a control tick.
 ///
@@ -105,7 +105,7 @@ impl ContactMonitor {
     }
 
     /// One control tick. `tau` and `friction` are `(nv,)`, or `(nv - 6,)` for a floating base; `wrenches` the sensors'
-    /// readings, a NaN where one has none. Without sensors there are none.
+    /// readings, where one has one. Without sensors there are none.
     ///
     /// `dt` (s) is the time since the last sample that was accepted, where it is measured. Without it, that is the options'
     /// `dt`, and as much again for every sample refused in between. Over more than 50 ms, or five times the options' `dt`
@@ -119,7 +119,7 @@ impl ContactMonitor {
         v: &[f64],
         tau: &[f64],
         friction: Option<&[f64]>,
-        wrenches: Option<&[[f64; 6]]>,
+        wrenches: Option<&[Option<[f64; 6]>]>,
         dt: Option<f64>,
     ) -> Result<()> {
         let first = !self.clock.started();
@@ -163,7 +163,7 @@ impl ContactMonitor {
         v: &[f64],
         tau: &[f64],
         friction: Option<&[f64]>,
-        wrenches: Option<&[[f64; 6]]>,
+        wrenches: Option<&[Option<[f64; 6]>]>,
         dt: Option<f64>,
     ) -> Result<Step> {
         self.check_wrenches(wrenches)?;
@@ -190,7 +190,7 @@ impl ContactMonitor {
         }
     }
 
-    fn check_wrenches(&self, wrenches: Option<&[[f64; 6]]>) -> Result<()> {
+    fn check_wrenches(&self, wrenches: Option<&[Option<[f64; 6]>]>) -> Result<()> {
         match (&self.sensing, wrenches) {
             (Some(sensing), Some(wrenches)) => sensing.check_readings(wrenches),
             (Some(sensing), None) => sensing.check_readings(&[]),
@@ -262,7 +262,7 @@ impl ContactMonitor {
         report.joints_left_out.clear();
         if let Some(sensing) = &self.sensing {
             report.wrenches.extend_from_slice(sensing.external());
-            let left_out = |sensor: &usize| !is_known(&sensing.external()[*sensor]);
+            let left_out = |sensor: &usize| sensing.external()[*sensor].is_none();
             report.sensors_left_out.extend((0..sensing.external().len()).filter(left_out));
             let is_blind = |body: &usize| sensing.blind()[self.robot.velocity_range(*body)].contains(&true);
             report.joints_left_out.extend((1..self.robot.body_count()).filter(is_blind).map(|body| body - 1));

@@ -41,8 +41,8 @@ pub struct ContactReport {
     pub external_torque: Vec<f64>,
     /// The same without wanted contacts (Vorndamme 2017, eq. 20), zero where joints are left out `(nv,)`.
     pub collision_torque: Vec<f64>,
-    /// External wrench that each sensor sees, world axes, at its origin; NaN where one is left out (N, Nm).
-    pub wrenches: Vec<Vector6<f64>>,
+    /// External wrench that each sensor sees, world axes, at its origin; none where one is left out (N, Nm).
+    pub wrenches: Vec<Option<Vector6<f64>>>,
     /// Indices of the sensors without a reading.
     pub sensors_left_out: Vec<usize>,
     /// Indices of the joints whose torques a wanted contact loads unmeasured: behind its sensor, and on the way there

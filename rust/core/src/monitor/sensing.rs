@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::observer::WrenchObserver;
 use crate::observer::{MomentumObserver, Step};
 use crate::robot::{Kinematics, Robot};
-use crate::sensor::{check_readings, is_known, SensorTree};
+use crate::sensor::{check_readings, SensorTree};
 use crate::spatial::vector::{split, stack};
 
 /// A wanted sensor that comes back is trusted after so many time constants of the observer, which by then has
@@ -35,8 +35,8 @@ pub(super) struct Sensing {
     behind_wanted: Vec<bool>,
     blind: Vec<bool>,
     /// Of each sensor: its external wrench without wanted contacts.
-    unwanted: Vec<Vector6<f64>>,
-    trusted: Vec<Vector6<f64>>,
+    unwanted: Vec<Option<Vector6<f64>>>,
+    trusted: Vec<Option<Vector6<f64>>>,
 }
 
 impl Sensing {
@@ -65,8 +65,8 @@ impl Sensing {
             wanted_torque: vec![0.0; gain.len()],
             blind: behind_wanted.clone(),
             behind_wanted,
-            unwanted: vec![Vector6::zeros(); tree.len()],
-            trusted: vec![Vector6::zeros(); tree.len()],
+            unwanted: vec![Some(Vector6::zeros()); tree.len()],
+            trusted: vec![Some(Vector6::zeros()); tree.len()],
             wanted: is_wanted,
             tree,
         })
@@ -76,7 +76,7 @@ impl Sensing {
     pub fn update(
         &mut self,
         observer: &MomentumObserver,
-        readings: &[[f64; 6]],
+        readings: &[Option<[f64; 6]>],
         threshold: &[f64],
         step: Step,
         dt: f64,
@@ -88,26 +88,22 @@ impl Sensing {
         self.find_blind(observer.robot(), threshold, forgetting);
         self.exclude(observer.kinematics());
         for (sensor, trusted) in self.trusted.iter_mut().enumerate() {
-            *trusted = if self.settled[sensor] {
-                self.wrenches.external()[sensor]
-            } else {
-                Vector6::repeat(f64::NAN)
-            };
+            *trusted = self.wrenches.external()[sensor].filter(|_| self.settled[sensor]);
         }
     }
 
     /// As [`crate::sensor::LoadCompensator::check_readings`].
-    pub fn check_readings(&self, wrenches: &[[f64; 6]]) -> Result<()> {
+    pub fn check_readings(&self, wrenches: &[Option<[f64; 6]>]) -> Result<()> {
         check_readings(&self.tree, wrenches)
     }
 
-    /// External wrenches of all sensors, NaN where one is left out.
-    pub fn external(&self) -> &[Vector6<f64>] {
+    /// External wrenches of all sensors, none where one is left out.
+    pub fn external(&self) -> &[Option<Vector6<f64>>] {
         self.wrenches.external()
     }
 
-    /// The same without wanted contacts: zero at a wanted sensor, NaN where it is not known.
-    pub fn unwanted(&self) -> &[Vector6<f64>] {
+    /// The same without wanted contacts: zero at a wanted sensor, none where it is not known.
+    pub fn unwanted(&self) -> &[Option<Vector6<f64>>] {
         &self.unwanted
     }
 
@@ -126,8 +122,8 @@ impl Sensing {
         &self.tree
     }
 
-    /// External wrenches of all sensors, NaN where one is left out, or is wanted and not settled.
-    pub fn trusted(&self) -> &[Vector6<f64>] {
+    /// External wrenches of all sensors, none where one is left out, or is wanted and not settled.
+    pub fn trusted(&self) -> &[Option<Vector6<f64>>] {
         &self.trusted
     }
 
@@ -144,8 +140,8 @@ impl Sensing {
         self.settled.fill(true);
         self.wanted_torque.fill(0.0);
         self.blind.copy_from_slice(&self.behind_wanted);
-        self.unwanted.fill(Vector6::zeros());
-        self.trusted.fill(Vector6::zeros());
+        self.unwanted.fill(Some(Vector6::zeros()));
+        self.trusted.fill(Some(Vector6::zeros()));
     }
 
     /// Joints that a wanted contact may load unmeasured: on the chain of a wanted sensor without a settled reading,
@@ -187,7 +183,7 @@ impl Sensing {
                     || !self.tree.is_active(other)
                     || !self.tree.is_behind(sensor, other)
             });
-            if is_known(&wrench) && outermost {
+            if wrench.is_some() && outermost {
                 let lagged = self.wrenches.lagged_torque(sensor);
                 self.wanted_torque.iter_mut().zip(lagged).for_each(|(sum, torque)| *sum += torque);
             }
@@ -196,16 +192,18 @@ impl Sensing {
                     continue;
                 }
                 if !trusted {
-                    self.unwanted[other] = Vector6::repeat(f64::NAN);
+                    self.unwanted[other] = None;
                 } else if outermost {
                     let arm = self.tree.position(kinematics, sensor) - self.tree.position(kinematics, other);
-                    self.unwanted[other] -= moved(&wrench, &arm);
+                    let (unwanted, wrench) =
+                        (self.unwanted[other], wrench.map(|wrench| moved(&wrench, &arm)));
+                    self.unwanted[other] = unwanted.zip(wrench).map(|(sum, wrench)| sum - wrench);
                 }
             }
         }
         for (sensor, unwanted) in self.unwanted.iter_mut().enumerate() {
-            if self.wanted[sensor] && is_known(unwanted) {
-                *unwanted = Vector6::zeros();
+            if self.wanted[sensor] && unwanted.is_some() {
+                *unwanted = Some(Vector6::zeros());
             }
         }
     }

@@ -16,7 +16,7 @@ use crate::error::{Error, Result};
 use crate::observer::Step;
 use crate::robot::{Kinematics, Robot};
 use crate::sensor::distal_parts::{distal_parts, DistalPart};
-use crate::sensor::{is_known, sensor_torque, SensorTree};
+use crate::sensor::{sensor_torque, SensorTree};
 use crate::spatial::vector::{split, stack};
 
 /// A gain times the time step from which an observer follows from tick to tick.
@@ -49,7 +49,7 @@ pub(crate) struct WrenchObserver {
     known_rate: Vec<Spatial>,
     known_rate_before: Vec<Spatial>,
     had_reading: Vec<bool>,
-    external: Vec<Vector6<f64>>,
+    external: Vec<Option<Vector6<f64>>>,
     lagged: Vec<Vec<f64>>,
     /// Of what came during a sensor's last gap, how much the momentum observer may not know by now, per sensor `(nv,)`.
     unobserved: Vec<Vec<f64>>,
@@ -94,7 +94,7 @@ impl WrenchObserver {
             known_rate: zeros.clone(),
             known_rate_before: zeros.clone(),
             had_reading: vec![false; tree.len()],
-            external: zeros,
+            external: vec![Some(Spatial::zeros()); tree.len()],
             lagged: vec![vec![0.0; gain.len()]; tree.len()],
             unobserved: vec![vec![0.0; gain.len()]; tree.len()],
             before_gap: vec![0.0; gain.len()],
@@ -104,11 +104,17 @@ impl WrenchObserver {
         })
     }
 
-    /// One control tick, with poses and velocities of now and checked readings; one with a NaN leaves its sensor out.
+    /// One control tick, with poses and velocities of now and checked readings; a sensor without one is left out.
     ///
     /// The first call sets the initial momentum and gives zeros. A sensor that comes back is left out for one more tick.
     /// Over a gap the estimates are kept, as the momentum observer keeps its own.
-    pub fn update(&mut self, kinematics: &Kinematics, tree: &SensorTree, readings: &[[f64; 6]], step: Step) {
+    pub fn update(
+        &mut self,
+        kinematics: &Kinematics,
+        tree: &SensorTree,
+        readings: &[Option<[f64; 6]>],
+        step: Step,
+    ) {
         self.set_step(step.length(self.dt));
         let first = self.reference.is_none();
         let shift = kinematics.origin - *self.reference.get_or_insert(kinematics.origin);
@@ -116,19 +122,18 @@ impl WrenchObserver {
         std::mem::swap(&mut self.known_rate, &mut self.known_rate_before);
         self.pass(kinematics, tree, &shift);
         for (sensor, reading) in readings.iter().enumerate() {
-            let has_reading = !reading.iter().any(|x| x.is_nan());
             let known_before =
-                self.had_reading[sensor] && (!step.is_gap() || is_known(&self.external[sensor]));
-            self.usable[sensor] = has_reading && (first || known_before);
-            if has_reading {
+                self.had_reading[sensor] && (!step.is_gap() || self.external[sensor].is_some());
+            self.usable[sensor] = reading.is_some() && (first || known_before);
+            if let Some(reading) = reading {
                 self.known_rate[sensor] -= load(kinematics, tree, sensor, reading, &shift);
             }
             if !self.usable[sensor] {
-                self.external[sensor] = Vector6::repeat(f64::NAN);
+                self.external[sensor] = None;
             } else if !first && !step.is_gap() {
                 self.observe(kinematics, tree, sensor);
             }
-            self.had_reading[sensor] = has_reading;
+            self.had_reading[sensor] = reading.is_some();
         }
         self.before.origin = kinematics.origin;
         self.before.bodies.copy_from_slice(&kinematics.bodies);
@@ -180,11 +185,11 @@ impl WrenchObserver {
         let known = (self.known_rate[sensor] + self.known_rate_before[sensor]) * 0.5;
         let rate = (self.momentum[sensor] - self.momentum_before[sensor]) / self.decay_step;
         // After a gap the low-passes start anew.
-        let fresh = !is_known(&self.external[sensor]);
         let mean = rate - known;
         let now = about(&mean, kinematics);
-        let external = &mut self.external[sensor];
-        *external = if fresh { now } else { now + (*external - now) * self.wrench_decay };
+        let before = self.external[sensor];
+        let fresh = before.is_none();
+        self.external[sensor] = Some(before.map_or(now, |before| now + (before - now) * self.wrench_decay));
         let lagged = &mut self.lagged[sensor];
         let unobserved = &mut self.unobserved[sensor];
         if fresh {
@@ -206,8 +211,8 @@ impl WrenchObserver {
     }
 
     /// External wrenches: (force, moment) on the robot at each sensor's origin, world axes (N, Nm), the mean since the
-    /// last tick behind the low-pass, if any; NaN where a sensor is left out.
-    pub fn external(&self) -> &[Vector6<f64>] {
+    /// last tick behind the low-pass, if any; none where a sensor is left out.
+    pub fn external(&self) -> &[Option<Vector6<f64>>] {
         &self.external
     }
 
@@ -231,7 +236,7 @@ impl WrenchObserver {
     pub fn reset(&mut self) {
         self.reference = None;
         self.had_reading.fill(false);
-        self.external.fill(Vector6::zeros());
+        self.external.fill(Some(Vector6::zeros()));
         self.lagged.iter_mut().for_each(|row| row.fill(0.0));
         self.unobserved.iter_mut().for_each(|row| row.fill(0.0));
         self.usable.fill(true);

@@ -73,8 +73,8 @@ macro_rules! columns {
 columns! {
     /// Index into the robot's links.
     link: u32 = 0,
-    /// Triangle of the link's surface; -1 on an exact primitive.
-    triangle: i64 = -1,
+    /// Triangle of the link's surface; none on an exact primitive.
+    triangle: Option<u32> = None,
     /// Contact point, link frame (m).
     point: Vector3<f64> = Vector3::zeros(),
     /// Outward unit normal of the contact, link frame.

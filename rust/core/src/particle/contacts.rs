@@ -51,7 +51,7 @@ impl Default for Contacts {
 pub(super) struct Contact {
     pub point: Vector3<f64>,
     pub distance: f64,
-    pub triangle: i64,
+    pub triangle: Option<u32>,
     pub force: f64,
     pub variance: f64,
     pub misfit: f64,
@@ -65,7 +65,7 @@ impl Contact {
         task: &Task<'_>,
         sample: &Sample,
         centre: &Vector3<f64>,
-        triangle: i64,
+        triangle: Option<u32>,
         residual: &mut [f64],
     ) -> Contact {
         let (frame, target) = (&sample.links[task.link], sample.target.on(task.link));

@@ -43,14 +43,14 @@ pub(super) struct Obstacle {
     centre: Vector3<f64>,
     damping: f64,
     /// One a pose: where the nearest point was; -1 where not known.
-    triangles: [i64; POSES],
+    triangles: [Option<u32>; POSES],
     contacts: Contacts,
 }
 
 impl Obstacle {
     /// About a centre, in the world frame [m].
     pub fn at(centre: Vector3<f64>) -> Self {
-        Obstacle { centre, damping: DAMPING, triangles: [-1; POSES], contacts: Contacts::default() }
+        Obstacle { centre, damping: DAMPING, triangles: [None; POSES], contacts: Contacts::default() }
     }
 
     /// The contacts as last fitted.

@@ -1,6 +1,6 @@
 //! A six-axis force/torque sensor.
 
-use nalgebra::{Matrix3, Vector6};
+use nalgebra::Matrix3;
 
 use crate::spatial::Pose;
 
@@ -81,9 +81,4 @@ impl ForceTorqueSensor {
         let skew = (rotation.transpose() * rotation - Matrix3::identity()).amax();
         finite && skew < RIGID_TOLERANCE && rotation.determinant() > 0.0
     }
-}
-
-/// Whether a sensor gave a reading.
-pub(crate) fn is_known(wrench: &Vector6<f64>) -> bool {
-    !wrench.iter().any(|x| x.is_nan())
 }

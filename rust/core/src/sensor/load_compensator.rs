@@ -47,8 +47,8 @@ struct Acceleration {
 /// let still = [0.0; 7];
 /// // The arm stands upright: the sensor carries the 2 kg behind it, and somebody pulls at it with 5 N.
 /// let reading = [0.0, 0.0, 5.0 - 2.0 * 9.81, 0.0, 0.0, 0.0];
-/// let external = compensator.update(&still, &still, &still, &[reading])?;
-/// assert!((external[0][2] - 5.0).abs() < 1e-9);
+/// let external = compensator.update(&still, &still, &still, &[Some(reading)])?;
+/// assert!((external[0].unwrap()[2] - 5.0).abs() < 1e-9);
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -62,8 +62,7 @@ pub struct LoadCompensator {
     accelerations: Vec<Acceleration>,
     /// Of each sensor: what all behind it put on it but for external forces.
     loads: Vec<Load>,
-    external: Vec<Vector6<f64>>,
-    usable: Vec<bool>,
+    external: Vec<Option<Vector6<f64>>>,
 }
 
 impl LoadCompensator {
@@ -81,8 +80,7 @@ impl LoadCompensator {
             moving: (WORLD + 1..robot.body_count()).filter(moves).collect(),
             accelerations: vec![Acceleration { origin: zero, angular: zero }; robot.body_count()],
             loads: vec![Load { force: zero, moment: zero }; tree.len()],
-            external: vec![Vector6::zeros(); tree.len()],
-            usable: vec![true; tree.len()],
+            external: vec![Some(Vector6::zeros()); tree.len()],
             parts,
             tree,
             robot,
@@ -92,7 +90,7 @@ impl LoadCompensator {
     /// External wrenches at `q`, `v` and the acceleration `a`, one a sensor: (force, moment) on the robot at the
     /// sensor's origin, world axes (N, Nm). `wrenches` are the readings, sensor axes, in the sensors' order.
     ///
-    /// A reading with a NaN leaves its sensor out: its row is NaN, the others hold.
+    /// A sensor without a reading is left out: it has no external wrench, the others hold.
     ///
     /// # Errors
     /// [`Error::Input`] names the argument; the state is then unchanged.
@@ -101,8 +99,8 @@ impl LoadCompensator {
         q: &[f64],
         v: &[f64],
         a: &[f64],
-        wrenches: &[[f64; 6]],
-    ) -> Result<&[Vector6<f64>]> {
+        wrenches: &[Option<[f64; 6]>],
+    ) -> Result<&[Option<Vector6<f64>>]> {
         self.robot.check_configuration(q)?;
         self.robot.check_tangent("v", v)?;
         self.robot.check_tangent("a", a)?;
@@ -120,17 +118,13 @@ impl LoadCompensator {
         &mut self,
         kinematics: &Kinematics,
         acceleration: &[f64],
-        wrenches: &[[f64; 6]],
+        wrenches: &[Option<[f64; 6]>],
     ) {
         self.accelerate(kinematics, acceleration);
         self.load(kinematics);
         for (sensor, reading) in wrenches.iter().enumerate() {
-            self.usable[sensor] = !reading.iter().any(|x| x.is_nan());
-            self.external[sensor] = if self.usable[sensor] {
-                self.external_wrench(kinematics, sensor, reading)
-            } else {
-                Vector6::repeat(f64::NAN)
-            };
+            self.external[sensor] =
+                reading.as_ref().map(|reading| self.external_wrench(kinematics, sensor, reading));
         }
     }
 
@@ -138,7 +132,7 @@ impl LoadCompensator {
     ///
     /// # Errors
     /// [`Error::Input`] names the row.
-    pub fn check_readings(&self, wrenches: &[[f64; 6]]) -> Result<()> {
+    pub fn check_readings(&self, wrenches: &[Option<[f64; 6]>]) -> Result<()> {
         check_readings(&self.tree, wrenches)
     }
 
@@ -148,19 +142,13 @@ impl LoadCompensator {
     }
 
     /// The last call's external wrenches; zeros before the first.
-    pub fn external(&self) -> &[Vector6<f64>] {
+    pub fn external(&self) -> &[Option<Vector6<f64>>] {
         &self.external
-    }
-
-    /// Which sensors gave a reading in the last call.
-    pub fn usable(&self) -> &[bool] {
-        &self.usable
     }
 
     /// Forgets the last call.
     pub fn reset(&mut self) {
-        self.external.fill(Vector6::zeros());
-        self.usable.fill(true);
+        self.external.fill(Some(Vector6::zeros()));
     }
 
     /// Accelerations of the bodies' origins, from the base outwards.
@@ -233,13 +221,13 @@ impl LoadCompensator {
     }
 }
 
-/// One reading a sensor; NaN says that there is none, other numbers must be of a size to compute with.
-pub(crate) fn check_readings(tree: &SensorTree, wrenches: &[[f64; 6]]) -> Result<()> {
+/// One reading a sensor, or none; its numbers must be of a size to compute with.
+pub(crate) fn check_readings(tree: &SensorTree, wrenches: &[Option<[f64; 6]>]) -> Result<()> {
     if wrenches.len() != tree.len() {
         return Err(wrong_count(tree, wrenches.len()));
     }
     for (row, reading) in wrenches.iter().enumerate() {
-        if reading.iter().any(|x| x.abs() >= LARGEST) {
+        if reading.iter().flatten().any(|x| x.is_nan() || x.abs() >= LARGEST) {
             return Err(too_large(tree, row));
         }
     }

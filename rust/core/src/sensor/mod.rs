@@ -7,7 +7,6 @@ mod load_compensator;
 mod sensor_tree;
 
 pub(crate) use exclusion::sensor_torque;
-pub(crate) use force_torque_sensor::is_known;
 pub use force_torque_sensor::{Convention, ForceTorqueSensor};
 pub(crate) use load_compensator::check_readings;
 pub use load_compensator::LoadCompensator;

@@ -41,8 +41,12 @@ pub(super) fn surface(parts: Vec<Part>) -> Result<(Surface, Vec<String>)> {
             Solid::Exact(placed) => placed.tessellate(),
         };
         let first = vertices.len();
-        if first + own_vertices.len() > u32::MAX as usize {
-            return Err(Error::geometry(format!("{} vertices are too many", first + own_vertices.len())));
+        for (what, count) in
+            [("vertices", first + own_vertices.len()), ("triangles", triangles.len() + own_triangles.len())]
+        {
+            if count > u32::MAX as usize {
+                return Err(Error::geometry(format!("{count} {what} are too many")));
+            }
         }
         vertices.extend(own_vertices);
         triangles.extend(own_triangles.iter().map(|t| t.map(|v| v + first as u32)));

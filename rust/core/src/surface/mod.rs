@@ -42,8 +42,8 @@ pub struct ClosestPoint {
     pub normal: Vector3<f64>,
     /// Euclidean distance from the query, never negative (m).
     pub distance: f64,
-    /// Index into [`Surface::triangles`]; -1 on an exact primitive.
-    pub triangle: i64,
+    /// Index into [`Surface::triangles`]; none on an exact primitive.
+    pub triangle: Option<u32>,
 }
 
 /// One crossing of a line with a surface.
@@ -68,8 +68,8 @@ pub struct RayHit {
     pub point: Vector3<f64>,
     /// Outward unit normal.
     pub normal: Vector3<f64>,
-    /// Index into [`Surface::triangles`]; -1 on an exact primitive.
-    pub triangle: i64,
+    /// Index into [`Surface::triangles`]; none on an exact primitive.
+    pub triangle: Option<u32>,
     /// Index of the part that was hit.
     pub part: u32,
     /// The line goes into the part here; otherwise it comes out.
@@ -95,8 +95,8 @@ pub struct SurfacePoint {
     pub point: Vector3<f64>,
     /// Outward unit normal.
     pub normal: Vector3<f64>,
-    /// Index into [`Surface::triangles`]; -1 on an exact primitive.
-    pub triangle: i64,
+    /// Index into [`Surface::triangles`]; none on an exact primitive.
+    pub triangle: Option<u32>,
 }
 
 /// The surface of one link.
@@ -185,40 +185,38 @@ impl Surface {
 
     /// As [`closest_point`](Self::closest_point), faster if `triangle` (of an earlier answer) is near the query.
     ///
-    /// An index that names no mesh triangle, such as -1, only loses the gain.
-    pub fn closest_point_from(&self, p: &Vector3<f64>, triangle: i64) -> ClosestPoint {
-        self.nearest(p, Some(triangle))
+    /// None, or an index that names no mesh triangle, only loses the gain.
+    pub fn closest_point_from(&self, p: &Vector3<f64>, triangle: Option<u32>) -> ClosestPoint {
+        self.nearest(p, triangle)
     }
 
     /// The point nearest to `p` in the neighbourhood of `triangle` (of an earlier answer): no point next to it is nearer,
     /// though another part of a surface that is not convex may be. Much faster than
     /// [`closest_point`](Self::closest_point), and the same where surface and query move by little.
     ///
-    /// An index that names no mesh triangle, such as -1, gives the nearest point of all.
-    pub fn closest_point_near(&self, p: &Vector3<f64>, triangle: i64) -> ClosestPoint {
-        for solid in &self.solids {
-            if let Solid::Mesh { mesh, first } = solid {
-                if triangle >= *first as i64 && triangle < (first + mesh.triangles.len()) as i64 {
-                    let found = mesh.descend(p, triangle as usize - first, *first);
-                    return found.unwrap_or_else(|| self.nearest(p, Some(triangle)));
-                }
-            }
-        }
-        self.nearest(p, None)
+    /// None, or an index that names no mesh triangle, gives the nearest point of all.
+    pub fn closest_point_near(&self, p: &Vector3<f64>, triangle: Option<u32>) -> ClosestPoint {
+        let start = triangle
+            .and_then(|triangle| self.solids.iter().find_map(|solid| Some((solid, solid.holds(triangle)?))));
+        let found = match start {
+            Some((Solid::Mesh { mesh, first }, id)) => mesh.descend(p, id, *first),
+            _ => None,
+        };
+        found.unwrap_or_else(|| self.nearest(p, start.and(triangle)))
     }
 
     /// Whether a point of the surface lies inside another closed part, where nothing outside the link reaches it.
-    /// `triangle` is the one that holds the point, or -1.
-    pub fn hides(&self, point: &Vector3<f64>, triangle: i64) -> bool {
+    /// `triangle` is the one that holds the point, if it is on a mesh.
+    pub fn hides(&self, point: &Vector3<f64>, triangle: Option<u32>) -> bool {
         self.solids.len() > 1 && self.sampler.hides(&self.solids, point, triangle)
     }
 
-    fn nearest(&self, p: &Vector3<f64>, warm_start: Option<i64>) -> ClosestPoint {
+    fn nearest(&self, p: &Vector3<f64>, warm_start: Option<u32>) -> ClosestPoint {
         let mut best = ClosestPoint {
             point: Vector3::repeat(f64::NAN),
             normal: Vector3::z(),
             distance: f64::INFINITY,
-            triangle: -1,
+            triangle: None,
         };
         for solid in &self.solids {
             solid.closest_point(p, warm_start, &mut best);

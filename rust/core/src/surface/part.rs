@@ -95,14 +95,18 @@ impl Solid {
         }
     }
 
+    /// The index in this part's mesh of a triangle of the surface; none where another part, or none, holds it.
+    #[inline]
+    pub fn holds(&self, triangle: u32) -> Option<usize> {
+        let Solid::Mesh { mesh, first } = self else { return None };
+        (triangle as usize).checked_sub(*first).filter(|&id| id < mesh.triangles.len())
+    }
+
     /// Replaces `best` if this part is nearer.
-    pub fn closest_point(&self, p: &Vector3<f64>, warm_start: Option<i64>, best: &mut ClosestPoint) {
+    pub fn closest_point(&self, p: &Vector3<f64>, warm_start: Option<u32>, best: &mut ClosestPoint) {
         match self {
             Solid::Mesh { mesh, first } => {
-                let hint = warm_start
-                    .and_then(|t| usize::try_from(t).ok())
-                    .and_then(|t| t.checked_sub(*first))
-                    .filter(|&t| t < mesh.triangles.len());
+                let hint = warm_start.and_then(|triangle| self.holds(triangle));
                 mesh.closest_point(p, hint, *first, best);
             }
             Solid::Exact(placed) => placed.closest_point(p, best),

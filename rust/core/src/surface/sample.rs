@@ -51,10 +51,9 @@ impl Sampler {
     }
 
     /// Whether a point of a part, which holds `triangle` where that is a mesh, is inside another one.
-    pub fn hides(&self, solids: &[Solid], point: &Vector3<f64>, triangle: i64) -> bool {
+    pub fn hides(&self, solids: &[Solid], point: &Vector3<f64>, triangle: Option<u32>) -> bool {
         solids.iter().any(|solid| {
-            let own = matches!(solid, Solid::Mesh { mesh, first }
-                if triangle >= *first as i64 && triangle < (first + mesh.triangles.len()) as i64);
+            let own = triangle.is_some_and(|triangle| solid.holds(triangle).is_some());
             !own && solid.contains(point, self.tolerance)
         })
     }
@@ -68,7 +67,7 @@ impl Sampler {
                 point: sample.point,
                 normal: Vector3::zeros(),
                 distance: f64::INFINITY,
-                triangle: -1,
+                triangle: None,
             };
             solid.closest_point(&sample.point, None, &mut nearest);
             if nearest.distance > self.tolerance {
@@ -158,6 +157,6 @@ fn on_triangle(mesh: &Mesh, first: usize, id: usize, u: f64, v: f64) -> SurfaceP
     SurfacePoint {
         point: a + ((b - a) * (1.0 - v) + (c - a) * v) * root,
         normal: mesh.normals[id],
-        triangle: (first + id) as i64,
+        triangle: Some((first + id) as u32),
     }
 }

@@ -41,6 +41,8 @@ fn parts(error: &Error) -> (Option<&str>, Option<&Path>, &str) {
     }
 }
 
+type Edit = fn(&mut RobotDescription);
+
 fn load(path: &Path) -> Error {
     Robot::from_urdf(path, &UrdfOptions::default()).expect_err("it cannot be used")
 }
@@ -107,12 +109,12 @@ fn links_and_joints_are_named() {
 
 #[test]
 fn descriptions_made_by_hand_name_the_element() {
-    let change = |change: fn(&mut RobotDescription)| {
+    let refuse = |change: Edit| {
         let mut description = RobotDescription::example_arm();
         change(&mut description);
         Robot::new(description).expect_err("it cannot be used")
     };
-    let cases: [(fn(&mut RobotDescription), Option<&str>); 5] = [
+    let cases: [(Edit, Option<&str>); 5] = [
         (|robot| robot.joints[1].axis.fill(0.0), Some("joint 'joint_2'")),
         (|robot| robot.links[1].joint = 99, Some("link 'link_2'")),
         (|robot| robot.links[1].mass = f64::NAN, Some("link 'link_2'")),
@@ -123,7 +125,7 @@ fn descriptions_made_by_hand_name_the_element() {
         (|robot| robot.gravity.fill(f64::NAN), None),
     ];
     for (edit, element) in cases {
-        let error = change(edit);
+        let error = refuse(edit);
         assert_eq!(parts(&error).0, element, "{error:?}");
         assert!(error.source().is_none() && parts(&error).1.is_none());
     }

@@ -62,7 +62,7 @@ impl Mesh {
             return false;
         }
         let mut nearest =
-            ClosestPoint { point: *p, normal: Vector3::zeros(), distance: f64::INFINITY, triangle: -1 };
+            ClosestPoint { point: *p, normal: Vector3::zeros(), distance: f64::INFINITY, triangle: None };
         self.closest_point(p, None, 0, &mut nearest);
         nearest.distance > tolerance
     }

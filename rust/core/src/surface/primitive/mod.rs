@@ -135,7 +135,7 @@ impl Placed {
                 point: self.pose.transform_point(&nearest.point),
                 normal: self.pose.rotation * nearest.normal,
                 distance,
-                triangle: -1,
+                triangle: None,
             };
         }
     }
@@ -170,7 +170,7 @@ impl Placed {
                 distance,
                 point: origin + direction * distance,
                 normal: self.pose.rotation * crossing.normal,
-                triangle: -1,
+                triangle: None,
                 part,
                 entering,
                 hidden: false,
@@ -186,7 +186,7 @@ impl Placed {
         SurfacePoint {
             point: self.pose.transform_point(&point),
             normal: self.pose.rotation * normal,
-            triangle: -1,
+            triangle: None,
         }
     }
 

@@ -67,7 +67,7 @@ impl Mesh {
                 point,
                 normal: self.normals[id],
                 distance: nearest.sqrt(),
-                triangle: (first + id) as i64,
+                triangle: Some((first + id) as u32),
             };
         }
     }

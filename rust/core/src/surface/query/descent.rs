@@ -121,7 +121,7 @@ impl Mesh {
                         point,
                         normal: self.normals[id],
                         distance: squared.sqrt(),
-                        triangle: (first + id) as i64,
+                        triangle: Some((first + id) as u32),
                     })
                 }
             }

@@ -128,7 +128,7 @@ impl Ray<'_> {
                         distance,
                         point: origin + direction * distance,
                         normal: mesh.normals[id],
-                        triangle: (first + id) as i64,
+                        triangle: Some((first + id) as u32),
                         part,
                         entering,
                         hidden: false,

@@ -27,7 +27,7 @@ fn many_triangles_round_one_vertex() {
     assert!((cone.area() - TAU / 2.0 * (1.0 + 2f64.sqrt())).abs() < 1e-6);
     // From the tip, where all of them meet, the search goes through the tree.
     let above = Vector3::new(0.0, 0.0, 2.0);
-    let near = cone.closest_point_near(&above, 0);
+    let near = cone.closest_point_near(&above, Some(0));
     assert_eq!(near.point, Vector3::z());
     let beside = Vector3::new(1.0, 0.0, 0.6);
     let [near, nearest] = [cone.closest_point_near(&beside, near.triangle), cone.closest_point(&beside)];

@@ -57,7 +57,7 @@ fn check_closest(geometry: &Geometry, surface: &Surface, p: &Vector3<f64>) {
     assert!((got.distance - (got.point - p).norm()).abs() <= ROUNDING * scale, "{geometry:?} {p:?} {got:?}");
     assert!(signed_distance(geometry, &got.point).abs() <= ROUNDING * scale, "{geometry:?} {p:?} {got:?}");
     assert!((got.normal.norm() - 1.0).abs() <= ROUNDING);
-    assert_eq!(got.triangle, -1);
+    assert_eq!(got.triangle, None);
     // Along the normal it goes out, against it in.
     let step = 1e-4 * surface.bounding_sphere().1;
     assert!(signed_distance(geometry, &(got.point + got.normal * step)) > 0.5 * step);

@@ -87,17 +87,17 @@ fn what_another_part_covers_is_hidden() {
     let mesh = Geometry::Mesh { vertices, triangles };
     let parts = vec![Part { geometry: cube.clone(), pose: at(0.0) }, Part { geometry: mesh, pose: at(0.1) }];
     let both = Surface::new(parts).unwrap().0;
-    assert!(both.hides(&Vector3::new(0.1, 0.0, 0.01), -1), "on the box, inside the mesh");
+    assert!(both.hides(&Vector3::new(0.1, 0.0, 0.01), None), "on the box, inside the mesh");
     let near = both.closest_point(&Vector3::new(0.25, 0.01, 0.02));
     assert!(!both.hides(&near.point, near.triangle));
     let inside = Vector3::new(0.0, 0.01, 0.02);
     let triangle = (0..both.triangles().len())
         .find(|&id| both.triangles()[id].iter().all(|&v| both.vertices()[v as usize][0].abs() < 1e-9))
         .expect("the mesh has a face at x = 0");
-    assert!(both.hides(&inside, triangle as i64), "on the mesh, inside the box");
+    assert!(both.hides(&inside, Some(triangle as u32)), "on the mesh, inside the box");
     for sample in both.sample(200, 3) {
         assert!(!both.hides(&sample.point, sample.triangle));
     }
     let alone = Surface::new(vec![Part { geometry: cube, pose: at(0.0) }]).unwrap().0;
-    assert!(!alone.hides(&Vector3::new(0.0, 0.0, 0.0), -1));
+    assert!(!alone.hides(&Vector3::new(0.0, 0.0, 0.0), None));
 }

@@ -62,7 +62,7 @@ fn open_parts_hide_nothing() {
     assert!(!surface.watertight());
     let hits = cast(&surface, [0.0, 0.1, 0.2], [1.0, 0.0, 0.0]);
     assert_eq!(distances(&hits), [-1.0, -0.5, 0.5, 1.0]);
-    assert!(surface.sample(500, 1).iter().any(|s| s.triangle < 0));
+    assert!(surface.sample(500, 1).iter().any(|s| s.triangle.is_none()));
 }
 
 /// A link of all kinds of parts, turned and overlapping.
@@ -144,5 +144,5 @@ fn touching_faces_are_not_sampled_and_coinciding_ones_once() {
     let (touching, _) = Surface::new(vec![cube([0.0; 3]), cube([1.0, 0.0, 0.0])]).unwrap();
     assert!(touching.sample(5000, 3).iter().all(|s| (s.point.x - 0.5).abs() > 1e-9 || s.normal.x == 0.0));
     let (same, _) = Surface::new(vec![cube([0.0; 3]), part(&block([-0.5; 3], [0.5; 3]))]).unwrap();
-    assert!(same.sample(2000, 3).iter().all(|s| s.triangle == -1));
+    assert!(same.sample(2000, 3).iter().all(|s| s.triangle.is_none()));
 }
