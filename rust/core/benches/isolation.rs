@@ -14,7 +14,7 @@ use criterion::{criterion_group, criterion_main, Criterion};
 fn push(robot: &Robot, q: &[f64]) -> Vec<f64> {
     let link = *robot.touchable_links().last().expect("links with a surface");
     let pose = robot.link_pose(q, link).expect("a valid link");
-    let surface = robot.links()[link].surface.as_ref().expect("a surface");
+    let surface = robot[link].surface.as_ref().expect("a surface");
     let sample = surface.sample(1, 5)[0];
     let point = pose.transform_point(&sample.point);
     let tilt = nalgebra::Vector3::new(0.2, -0.1, 0.15);

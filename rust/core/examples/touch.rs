@@ -31,7 +31,7 @@ fn main() -> Result<()> {
     }
     let no_surface = || Error::input("robot", "has no surface that can be in contact");
     let &link = robot.touchable_links().iter().nth_back(1).ok_or_else(no_surface)?;
-    let surface = robot.links()[link].surface.as_ref().ok_or_else(no_surface)?;
+    let surface = robot[link].surface.as_ref().ok_or_else(no_surface)?;
     let pose = robot.link_pose(&q, link)?;
     let touched = surface.sample(1, 7).into_iter().next().ok_or_else(no_surface)?;
     let point = pose.transform_point(&touched.point);
@@ -41,9 +41,9 @@ fn main() -> Result<()> {
 
     let mut isolator = ContactIsolator::new(robot.clone(), &IsolatorOptions::default())?;
     let isolation = isolator.isolate(&q, tau_ext.as_slice())?;
-    println!("pushed: {} at {:.4?} m", robot.links()[link].name, point.as_slice());
+    println!("pushed: {} at {:.4?} m", robot[link].name, point.as_slice());
     for contact in &isolation.contacts {
-        let name = &robot.links()[contact.link].name;
+        let name = &robot[contact.link].name;
         match (contact.place, contact.force()) {
             (Some(place), Some(force)) if contact.located => {
                 println!("found:  {name} at {:.4?} m, {:.2} N", place.point.as_slice(), force.norm());

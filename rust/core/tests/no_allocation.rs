@@ -59,7 +59,7 @@ fn allocations(mut work: impl FnMut()) -> usize {
 fn touches(robot: &Robot, q: &[f64]) -> Vec<Vec<f64>> {
     let mut torques = vec![];
     for &link in robot.touchable_links() {
-        let surface = robot.links()[link].surface.as_ref().expect("a touchable link");
+        let surface = robot[link].surface.as_ref().expect("a touchable link");
         for sample in surface.sample(5, 1) {
             let pose = robot.link_pose(q, link).expect("a valid link");
             let point = pose.transform_point(&sample.point);

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex};
 
 use contactsense::isolation::{Candidate, Contact, ContactIsolator, Isolation, IsolatorOptions};
-use contactsense::robot::Robot;
+use contactsense::robot::{LinkIndex, Robot};
 use contactsense::sensor::JOINT_TORQUES;
 use nalgebra::Vector6;
 use numpy::PyArray1;
@@ -30,7 +30,7 @@ impl PyCandidate {
     /// The link's name.
     #[getter]
     fn link(&self) -> &str {
-        &self.robot.links()[self.candidate.link].name
+        &self.robot[self.candidate.link].name
     }
 
     /// `(3,)`, world frame [m].
@@ -71,7 +71,7 @@ impl PyContact {
     /// The contact link's name.
     #[getter]
     fn link(&self) -> &str {
-        &self.robot.links()[self.contact.link].name
+        &self.robot[self.contact.link].name
     }
 
     /// `(3,)`, world frame [m].
@@ -107,7 +107,7 @@ impl PyContact {
     /// What saw it: "joint torques", or the sensor's name.
     #[getter]
     fn source(&self) -> &str {
-        self.contact.source.map_or(JOINT_TORQUES, |sensor| &self.sensors[sensor])
+        self.contact.source.map_or(JOINT_TORQUES, |sensor| &self.sensors[sensor.get()])
     }
 
     /// Whether 90 % of the places that explain the torques lie within `locate_within` of the point. If not, the link may
@@ -186,8 +186,8 @@ pub fn contacts<'py>(
 }
 
 /// Names of links.
-pub fn names<'py>(py: Python<'py>, robot: &Robot, links: &[usize]) -> PyResult<Bound<'py, PyTuple>> {
-    PyTuple::new(py, links.iter().map(|link| &robot.links()[*link].name))
+pub fn names<'py>(py: Python<'py>, robot: &Robot, links: &[LinkIndex]) -> PyResult<Bound<'py, PyTuple>> {
+    PyTuple::new(py, links.iter().map(|link| &robot[*link].name))
 }
 
 #[pymethods]

@@ -81,7 +81,7 @@ impl PyContactReport {
     /// Names of the sensors without a reading in this tick.
     #[getter]
     fn sensors_left_out<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        PyTuple::new(py, self.report.sensors_left_out.iter().map(|sensor| &self.sensors[*sensor]))
+        PyTuple::new(py, self.report.sensors_left_out.iter().map(|sensor| &self.sensors[sensor.get()]))
     }
 
     /// Names of the joints whose torques say nothing of a collision, since a wanted contact loads them unmeasured: those

@@ -203,7 +203,8 @@ impl PyContactParticleFilter {
         let filter = self.sole(py)?;
         let columns = filter.particles();
         let touchable = self.robot.touchable_links();
-        let number = |link: u32| touchable.iter().position(|&l| l == link as usize).map_or(-1, |k| k as i64);
+        let number =
+            |link: u32| touchable.iter().position(|l| l.get() == link as usize).map_or(-1, |k| k as i64);
         let count = columns.len();
         let points = (0..count).map(|k| filter.point(k).into());
         let normals = (0..count).map(|k| filter.normal(k).into());

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use contactsense::robot::Robot;
+use contactsense::robot::{LinkIndex, Robot};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -20,7 +20,7 @@ pub struct PyRobot(pub Arc<Robot>);
 
 impl PyRobot {
     /// Index of a link by its name.
-    fn link(&self, link: &Bound<'_, PyAny>) -> PyResult<usize> {
+    fn link(&self, link: &Bound<'_, PyAny>) -> PyResult<LinkIndex> {
         self.0.link(text("link", link)?).map_err(|error| to_python(link.py(), error))
     }
 }
@@ -80,7 +80,7 @@ impl PyRobot {
     /// Names of the links that have a surface.
     #[getter]
     fn link_names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        PyTuple::new(py, self.0.touchable_links().iter().map(|link| &self.0.links()[*link].name))
+        PyTuple::new(py, self.0.touchable_links().iter().map(|link| &self.0[*link].name))
     }
 
     /// What was odd in the description, and what was done about it.
@@ -176,9 +176,9 @@ impl PyRobot {
     /// Raises `InputError` where the link is unknown or has no surface.
     fn surface(&self, py: Python<'_>, link: &Bound<'_, PyAny>) -> PyResult<PySurface> {
         let index = self.link(link)?;
-        if self.0.links()[index].surface.is_none() {
+        if self.0[index].surface.is_none() {
             let names: Vec<&str> =
-                self.0.touchable_links().iter().map(|i| self.0.links()[*i].name.as_str()).collect();
+                self.0.touchable_links().iter().map(|i| self.0[*i].name.as_str()).collect();
             return Err(input(
                 py,
                 format!(

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use contactsense::robot::Robot;
+use contactsense::robot::{LinkIndex, Robot};
 use contactsense::surface::{RayHit, Surface};
 use nalgebra::Vector3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
@@ -29,7 +29,7 @@ const RAY_HITS: usize = 64;
 #[pyclass(frozen, name = "Surface", module = "contactsense._core")]
 pub struct PySurface {
     pub robot: Arc<Robot>,
-    pub link: usize,
+    pub link: LinkIndex,
 }
 
 /// Nearest points, one row a query.
@@ -73,7 +73,7 @@ pub struct SurfaceSamples {
 
 impl PySurface {
     fn core(&self, py: Python<'_>) -> PyResult<&Surface> {
-        let surface = self.robot.links()[self.link].surface.as_ref();
+        let surface = self.robot[self.link].surface.as_ref();
         surface.ok_or_else(|| to_python(py, Error::geometry("this link has no surface")))
     }
 }

@@ -8,7 +8,7 @@ use nalgebra::Vector6;
 use super::gate::{check_hold_time, check_threshold, check_wrench_threshold, is_over, Gate};
 use super::signal_tree::{Signal, SignalTree};
 use crate::error::Result;
-use crate::robot::Robot;
+use crate::robot::{LinkIndex, Robot};
 use crate::sensor::SensorTree;
 
 /// The signals of joints and sensors, and the links that they leave for a contact.
@@ -22,7 +22,7 @@ pub(crate) struct Detector {
     wrench_size: Vec<f64>,
     is_known: Vec<bool>,
     tree: SignalTree,
-    links: Vec<usize>,
+    links: Vec<LinkIndex>,
     collision: bool,
     onset: bool,
 }
@@ -115,7 +115,7 @@ impl Detector {
     }
 
     /// Touchable links between the last signal over its threshold and the next under it, on every branch.
-    pub fn links(&self) -> &[usize] {
+    pub fn links(&self) -> &[LinkIndex] {
         &self.links
     }
 

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::robot::{Robot, WORLD};
+use crate::robot::{LinkIndex, Robot, WORLD};
 use crate::sensor::SensorTree;
 
 /// A joint's or a sensor's place in the tree.
@@ -11,7 +11,7 @@ struct Node {
     signal: Signal,
     parent: Option<usize>,
     /// Touchable links between this signal and the next ones.
-    links: Vec<usize>,
+    links: Vec<LinkIndex>,
 }
 
 /// What can be over its threshold.
@@ -78,7 +78,7 @@ impl SignalTree {
             .map(|&signal| Node { signal, parent: parent_of(signal).and_then(place), links: vec![] })
             .collect();
         for &link in robot.touchable_links() {
-            if let Some(node) = signal_of(link).and_then(place) {
+            if let Some(node) = signal_of(link.get()).and_then(place) {
                 nodes[node].links.push(link);
             }
         }
@@ -92,7 +92,7 @@ impl SignalTree {
         &mut self,
         over: impl Fn(Signal) -> bool,
         passes: impl Fn(usize) -> bool,
-        region: &mut Vec<usize>,
+        region: &mut Vec<LinkIndex>,
     ) {
         region.clear();
         self.felt_behind.fill(false);
@@ -125,7 +125,7 @@ mod tests {
     use nalgebra::{Matrix3, Vector3};
 
     use super::{Signal, SignalTree};
-    use crate::robot::{JointDescription, JointKind, LinkDescription, Robot, RobotDescription};
+    use crate::robot::{JointDescription, JointKind, LinkDescription, LinkIndex, Robot, RobotDescription};
     use crate::sensor::SensorTree;
     use crate::spatial::Pose;
     use crate::surface::{Geometry, Part};
@@ -166,6 +166,6 @@ mod tests {
         let mut tree = SignalTree::new(&robot, &SensorTree::new(&robot, &[]).unwrap());
         let mut region = Vec::new();
         tree.region(|signal| signal == Signal::Joint { body: 1500 }, |_| false, &mut region);
-        assert_eq!(region, [1500]);
+        assert_eq!(region, [LinkIndex::new(1500)]);
     }
 }

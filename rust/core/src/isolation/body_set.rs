@@ -5,7 +5,7 @@ use super::found::Scene;
 use super::region::Region;
 use super::wrench::{WrenchEstimate, ORIGIN};
 use crate::robot::jacobian::jacobian_column;
-use crate::robot::Robot;
+use crate::robot::{LinkIndex, Robot};
 
 /// A set of bodies, grown from a contact body away from the base.
 #[derive(Debug, Clone)]
@@ -56,7 +56,7 @@ impl BodySet {
     }
 
     /// The touchable links on these bodies, nearest to the base first.
-    pub fn links<'a>(&'a self, robot: &'a Robot, region: &'a Region) -> impl Iterator<Item = usize> + 'a {
+    pub fn links<'a>(&'a self, robot: &'a Robot, region: &'a Region) -> impl Iterator<Item = LinkIndex> + 'a {
         let members = self.member.iter().enumerate().filter(|(_, member)| **member);
         members.flat_map(|(body, _)| region.links_of(robot, body))
     }

@@ -17,7 +17,7 @@ use super::wrench::WrenchEstimate;
 use crate::detection::{check_threshold, check_wrench_threshold, is_over};
 use crate::error::{Error, Result};
 use crate::observer::WrenchObserver;
-use crate::robot::{Kinematics, Robot};
+use crate::robot::{Kinematics, LinkIndex, Robot};
 use crate::sensor::SensorTree;
 
 /// All hits of one instant that are kept.
@@ -85,7 +85,7 @@ pub struct ContactIsolator {
     pub(super) line: LineCast,
     rows: TorqueRows,
     pub(super) several: SeveralContacts,
-    pub(super) near: Vec<usize>,
+    pub(super) near: Vec<LinkIndex>,
     /// By body: cannot carry the contact that is being judged.
     pub(super) excluded: Vec<bool>,
     pub(super) displaced: Vec<Candidate>,
@@ -198,7 +198,7 @@ impl ContactIsolator {
         }
         if !wrenches.is_empty() {
             let Self { robot, isolation, .. } = self;
-            let depth = |link: usize| robot.chain(robot.links[link].body).len();
+            let depth = |link: LinkIndex| robot.chain(robot[link].body).len();
             isolation
                 .contacts
                 .sort_unstable_by_key(|contact| (std::cmp::Reverse(depth(contact.link)), contact.link));

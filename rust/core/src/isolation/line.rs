@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::result::Candidate;
-use crate::robot::{Kinematics, Robot};
+use crate::robot::{Kinematics, Link, LinkIndex, Robot};
 use crate::surface::RayHit;
 
 /// Hits of one link that are kept: the nearest.
@@ -32,16 +32,16 @@ impl LineCast {
         &mut self,
         robot: &Robot,
         kinematics: &Kinematics,
-        link_index: usize,
+        link: LinkIndex,
         start: &Vector3<f64>,
         direction: &Vector3<f64>,
         candidates: &mut Vec<Candidate>,
     ) {
-        let link = &robot.links[link_index];
-        let Some(surface) = &link.surface else { return };
-        let body = &kinematics.bodies[link.body];
-        let rotation = body.rotation * link.placement.rotation;
-        let translation = body.position + body.rotation * link.placement.translation;
+        let Link { surface, body, placement, .. } = &robot[link];
+        let Some(surface) = surface else { return };
+        let body = &kinematics.bodies[*body];
+        let rotation = body.rotation * placement.rotation;
+        let translation = body.position + body.rotation * placement.translation;
         let origin = rotation.tr_mul(&(start - translation));
         let along = rotation.tr_mul(direction);
 
@@ -60,7 +60,7 @@ impl LineCast {
                 return;
             }
             candidates.push(Candidate {
-                link: link_index,
+                link,
                 point: rotation * hit.point + translation + kinematics.origin,
                 normal: rotation * hit.normal,
                 pushing: hit.normal.dot(&along) < 0.0,

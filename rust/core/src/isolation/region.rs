@@ -1,6 +1,6 @@
 //! The parts of the robot whose contacts are solved for together: everything, or what lies between sensors.
 
-use crate::robot::{Robot, WORLD};
+use crate::robot::{LinkIndex, Robot, WORLD};
 use crate::sensor::SensorTree;
 
 /// Joints whose torque counts, and links that may be touched.
@@ -47,8 +47,8 @@ impl Region {
     }
 
     /// The touchable links of a body in this region.
-    pub fn links_of<'a>(&'a self, robot: &'a Robot, body: usize) -> impl Iterator<Item = usize> + 'a {
-        robot.links_of_body(body).iter().copied().filter(|link| self.links[*link])
+    pub fn links_of<'a>(&'a self, robot: &'a Robot, body: usize) -> impl Iterator<Item = LinkIndex> + 'a {
+        robot.links_of_body(body).iter().copied().filter(|link| self.links[link.get()])
     }
 }
 

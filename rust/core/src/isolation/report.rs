@@ -9,7 +9,7 @@ use super::result::{Candidate, Contact, ContactPlace};
 use super::wrench::{WrenchEstimate, ORIGIN};
 use crate::math::chi_square::upper_limit;
 use crate::robot::jacobian::for_each_column;
-use crate::robot::{Kinematics, Robot};
+use crate::robot::{Kinematics, LinkIndex, Robot};
 use crate::spatial::vector::stack;
 
 /// One of several contacts is located if its point's standard deviation is less (m).
@@ -79,7 +79,7 @@ impl ContactIsolator {
         }
         let (wrench, hit) = (&found.wrench, &found.hit);
         let robot = self.robot.clone();
-        let body = robot.links[hit.link].body;
+        let body = robot[hit.link].body;
         let at = hit.point - kinematics.origin;
         // Lines displaced by an error hit the same body, or the next.
         self.near.clear();
@@ -106,7 +106,7 @@ impl ContactIsolator {
     /// The contact is at `hit`: identify the force there and judge how far both can be trusted.
     pub(super) fn report_point(&mut self, kinematics: &Kinematics, wrench: &WrenchEstimate, hit: &Candidate) {
         let robot = &self.robot;
-        let body = robot.links[hit.link].body;
+        let body = robot[hit.link].body;
         let at = hit.point - kinematics.origin;
         // A full-rank wrench leaves the force regular; keep the wrench's force should rounding say otherwise.
         let force =
@@ -194,7 +194,7 @@ impl ContactIsolator {
     }
 
     /// Of a body without surface: the first touchable link behind it, else before it.
-    fn nearest_touchable(&mut self, body: usize) -> Option<usize> {
+    fn nearest_touchable(&mut self, body: usize) -> Option<LinkIndex> {
         self.bodies.grow_all(&self.robot, &self.region, body);
         let behind = self.bodies.links(&self.robot, &self.region).next();
         behind.or_else(|| {

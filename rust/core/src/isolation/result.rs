@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use nalgebra::{Vector3, Vector6};
 
+use crate::robot::LinkIndex;
+use crate::sensor::SensorIndex;
 use crate::spatial::vector::split;
 
 /// A place where the line of action meets a surface.
@@ -30,8 +32,8 @@ use crate::spatial::vector::split;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
-    /// Index into [`crate::robot::Robot::links`].
-    pub link: usize,
+    /// The link.
+    pub link: LinkIndex,
     /// World frame (m).
     pub point: Vector3<f64>,
     /// Outward normal, world frame.
@@ -96,15 +98,15 @@ pub struct ContactPlace {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
-    /// Index into [`crate::robot::Robot::links`].
-    pub link: usize,
+    /// The link.
+    pub link: LinkIndex,
     /// Where on the link; none if only the link is known.
     pub place: Option<ContactPlace>,
     /// Wrench (force, moment) on the robot at the link's origin, world axes (N, Nm); none if only the link is known. It may
     /// be known where the place is not.
     pub wrench: Option<Vector6<f64>>,
-    /// The sensor that saw it, an index into the sensors given; none: the joint torques.
-    pub source: Option<usize>,
+    /// The sensor that saw it; none: the joint torques.
+    pub source: Option<SensorIndex>,
     /// Whether 90 % of the places that explain the torques lie within [`super::IsolatorOptions::locate_within`] of the
     /// point. If not, the link may be known, the point is not.
     pub located: bool,
@@ -116,7 +118,7 @@ pub struct Contact {
 }
 
 impl Contact {
-    pub(super) fn unlocated(link: usize) -> Self {
+    pub(super) fn unlocated(link: LinkIndex) -> Self {
         Self {
             link,
             place: None,
@@ -160,7 +162,7 @@ pub struct Isolation {
     /// Norm of the external torque that the contacts do not explain.
     pub residual: f64,
     /// Links that may carry a contact, likeliest first.
-    pub link_candidates: Vec<usize>,
+    pub link_candidates: Vec<LinkIndex>,
     /// Whether there were more contacts than `max_contacts`, more hits of a line than are kept (the nearest are), or more
     /// explanations to try than the bounded work of a call allows.
     pub truncated: bool,

@@ -31,7 +31,7 @@ impl ContactIsolator {
     ) -> Rivals {
         let distance = farthest_entry(&self.isolation.candidates, hit);
         let mut rivals = Rivals { distance, open: false };
-        let body = self.robot.links[hit.link].body;
+        let body = self.robot[hit.link].body;
         let limit = wrench.chi_square().0 + self.chi_square_outside(body) + UNLIKELY;
         self.exclude(kinematics, body, wrench, limit);
         for other in 1..self.robot.body_count() {
@@ -114,7 +114,7 @@ impl ContactIsolator {
         let mut farthest = None;
         for displacement in [first * 0.0, first * 2.0, first * -2.0, second * 2.0, second * -2.0] {
             self.displaced.clear();
-            let found = self.robot.links[hit.link].body;
+            let found = self.robot[hit.link].body;
             let links =
                 self.region.links_of(&self.robot, body).chain(self.region.links_of(&self.robot, found));
             for link in links {
@@ -122,7 +122,7 @@ impl ContactIsolator {
                 self.line.cast(&self.robot, kinematics, link, &start, &direction, &mut self.displaced);
             }
             best_first(&mut self.displaced);
-            let on_body = |entry: &&Candidate| entry.pushing && self.robot.links[entry.link].body == body;
+            let on_body = |entry: &&Candidate| entry.pushing && self.robot[entry.link].body == body;
             let mut entries = self.displaced.iter().filter(on_body);
             let Some(entry) = entries.find(|entry| !is_covered(&self.displaced, entry)) else { continue };
             let distance = (entry.point - hit.point).norm();

@@ -12,7 +12,7 @@ use crate::detection::is_over;
 use crate::observer::WrenchObserver;
 use crate::robot::jacobian::jacobian_column;
 use crate::robot::Kinematics;
-use crate::sensor::sensor_torque;
+use crate::sensor::{sensor_torque, SensorIndex};
 use crate::spatial::vector::{split, stack};
 
 /// Moment along the force that rounding leaves [tolerances].
@@ -88,7 +88,9 @@ impl ContactIsolator {
         std::mem::swap(&mut self.region, &mut self.regions.behind[sensor]);
         let first = self.isolation.contacts.len();
         self.locate(kinematics, &root, certain);
-        self.isolation.contacts[first..].iter_mut().for_each(|contact| contact.source = Some(sensor));
+        self.isolation.contacts[first..]
+            .iter_mut()
+            .for_each(|contact| contact.source = Some(SensorIndex::new(sensor)));
         std::mem::swap(&mut self.region, &mut self.regions.behind[sensor]);
     }
 

@@ -262,7 +262,7 @@ impl SeveralContacts {
             }
             let hits = [0, 1].map(|i| self.caster.hit_behind(scene, rows, bodies[i], &wrenches[i], limit));
             let [Some(first), Some(second)] = hits else { return false };
-            let hit_bodies = [first, second].map(|entry| scene.robot.links[entry.hit.link].body);
+            let hit_bodies = [first, second].map(|entry| scene.robot[entry.hit.link].body);
             if hit_bodies == bodies {
                 self.keep(wrenches, [first, second], misfit);
                 return true;

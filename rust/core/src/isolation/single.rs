@@ -62,7 +62,7 @@ impl ContactIsolator {
                 self.explain(kinematics, body, &wrench);
                 return;
             };
-            let hit_body = self.robot.links[hit.link].body;
+            let hit_body = self.robot[hit.link].body;
             if hit_body == body {
                 self.report_point(kinematics, &wrench, &hit);
                 return;
@@ -96,7 +96,7 @@ impl ContactIsolator {
                 &self.limit,
             );
             if let Some(hit) = self.cast(kinematics, &wrench) {
-                if self.robot.links[hit.link].body == body {
+                if self.robot[hit.link].body == body {
                     self.isolation.rank_deficit = 0;
                     self.report_point(kinematics, &wrench, &hit);
                     return true;

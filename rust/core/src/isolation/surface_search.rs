@@ -9,7 +9,7 @@ use super::found::Scene;
 use super::pair::{Open, PairEstimate};
 use super::result::Candidate;
 use super::rows::LEVER;
-use crate::robot::Robot;
+use crate::robot::{LinkIndex, Robot};
 use crate::surface::SurfacePoint;
 
 /// Pairs of samples, and how many samples a body has.
@@ -37,7 +37,7 @@ const SEED: u64 = 1;
 /// A sampled contact, from the kinematics' origin in world axes.
 #[derive(Debug, Clone, Copy)]
 struct Place {
-    link: usize,
+    link: LinkIndex,
     point: Vector3<f64>,
     normal: Vector3<f64>,
     /// Normal matrix and right side of what the torques say of a force here (on the second body), or the moment that
@@ -117,7 +117,7 @@ impl SurfaceSearch {
     }
 
     fn area(&self, scene: Scene, body: usize) -> f64 {
-        let surfaces = scene.region.links_of(scene.robot, body).map(|link| &scene.robot.links[link].surface);
+        let surfaces = scene.region.links_of(scene.robot, body).map(|link| &scene.robot[link].surface);
         surfaces.flatten().map(|surface| surface.area()).sum::<f64>().max(f64::MIN_POSITIVE)
     }
 
@@ -129,9 +129,9 @@ impl SurfaceSearch {
         places.clear();
         for link in region.links_of(robot, body) {
             let pose = kinematics.link_pose(robot, link);
-            let area = robot.links[link].surface.as_ref().map_or(0.0, |surface| surface.area());
+            let area = robot[link].surface.as_ref().map_or(0.0, |surface| surface.area());
             let share = (count * area / total).round() as usize;
-            for sample in self.samples[link].iter().take(share.max(1)) {
+            for sample in self.samples[link.get()].iter().take(share.max(1)) {
                 if places.len() == places.capacity() {
                     return;
                 }

@@ -85,7 +85,7 @@ impl SeveralContacts {
             for body in &mut bodies {
                 let wrench = self.stacked.wrench(self.found.len() - found);
                 let Some(entry) = self.caster.hit_behind(scene, rows, *body, &wrench, limit) else { break };
-                let hit_body = scene.robot.links[entry.hit.link].body;
+                let hit_body = scene.robot[entry.hit.link].body;
                 moved |= hit_body != *body;
                 *body = hit_body;
                 self.found.push(Found::new(wrench, entry));
@@ -110,9 +110,12 @@ impl SeveralContacts {
     pub fn identify(&mut self, scene: Scene, rows: &TorqueRows) {
         let best = self.solutions.first().into_iter().flat_map(|solution| &solution.contacts);
         self.places.clear();
-        self.places.extend(self.found.iter().chain(best).map(|found| {
-            (scene.robot.links[found.hit.link].body, found.hit.point - scene.kinematics.origin)
-        }));
+        self.places.extend(
+            self.found
+                .iter()
+                .chain(best)
+                .map(|found| (scene.robot[found.hit.link].body, found.hit.point - scene.kinematics.origin)),
+        );
         if !self.stacked.identify(scene, rows, &self.places) {
             return;
         }

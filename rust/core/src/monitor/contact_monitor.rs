@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::isolation::ContactIsolator;
 use crate::observer::{check_time_step, MomentumObserver, Step};
 use crate::robot::Robot;
-use crate::sensor::SensorTree;
+use crate::sensor::{SensorIndex, SensorTree};
 
 /// The sense of touch of one robot, called once a control tick.
 ///
@@ -262,8 +262,8 @@ impl ContactMonitor {
         report.joints_left_out.clear();
         if let Some(sensing) = &self.sensing {
             report.wrenches.extend_from_slice(sensing.external());
-            let left_out = |sensor: &usize| sensing.external()[*sensor].is_none();
-            report.sensors_left_out.extend((0..sensing.external().len()).filter(left_out));
+            let left_out = sensing.external().iter().enumerate().filter(|(_, wrench)| wrench.is_none());
+            report.sensors_left_out.extend(left_out.map(|(sensor, _)| SensorIndex::new(sensor)));
             let is_blind = |body: &usize| sensing.blind()[self.robot.velocity_range(*body)].contains(&true);
             report.joints_left_out.extend((1..self.robot.body_count()).filter(is_blind).map(|body| body - 1));
         }

@@ -3,6 +3,8 @@
 use nalgebra::Vector6;
 
 use crate::isolation::Isolation;
+use crate::robot::LinkIndex;
+use crate::sensor::SensorIndex;
 
 /// What the monitor says of one tick.
 ///
@@ -35,16 +37,16 @@ pub struct ContactReport {
     /// left, what outlasted [`MonitorOptions::bias_settle_time`](super::MonitorOptions::bias_settle_time), or no torque at
     /// all where the bias before was wrong.
     pub remainder_learned: bool,
-    /// Region that detection alone gives: indices into [`Robot::links`](crate::robot::Robot::links).
-    pub links: Vec<usize>,
+    /// Region that detection alone gives.
+    pub links: Vec<LinkIndex>,
     /// Bias-free external torque of all contacts `(nv,)`.
     pub external_torque: Vec<f64>,
     /// The same without wanted contacts (Vorndamme 2017, eq. 20), zero where joints are left out `(nv,)`.
     pub collision_torque: Vec<f64>,
     /// External wrench that each sensor sees, world axes, at its origin; none where one is left out (N, Nm).
     pub wrenches: Vec<Option<Vector6<f64>>>,
-    /// Indices of the sensors without a reading.
-    pub sensors_left_out: Vec<usize>,
+    /// The sensors without a reading.
+    pub sensors_left_out: Vec<SensorIndex>,
     /// Indices of the joints whose torques a wanted contact loads unmeasured: behind its sensor, and on the way there
     /// from the base while the sensor gives no reading, and until the observer has forgotten that gap.
     pub joints_left_out: Vec<usize>,

@@ -139,7 +139,7 @@ impl FilterOptions {
         self.force_model.check()?;
         self.schedule.check()?;
         let moving = |&index: &usize| robot.links()[index].body != WORLD;
-        let all: Vec<usize> = robot.touchable_links().iter().copied().filter(moving).collect();
+        let all: Vec<usize> = robot.touchable_links().iter().map(|link| link.get()).filter(moving).collect();
         if all.is_empty() {
             return Err(Error::input(
                 "robot",

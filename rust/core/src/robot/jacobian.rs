@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, Vector3, Vector6};
 
+use super::ids::LinkIndex;
 use super::kinematics::Kinematics;
 use super::robot::Robot;
 use crate::error::{Error, Result};
@@ -45,7 +46,7 @@ impl Robot {
     ///
     /// # Errors
     /// [`crate::Error::Input`] names the argument.
-    pub fn jacobian(&self, q: &[f64], link: usize, point: Option<[f64; 3]>) -> Result<DMatrix<f64>> {
+    pub fn jacobian(&self, q: &[f64], link: LinkIndex, point: Option<[f64; 3]>) -> Result<DMatrix<f64>> {
         let (kinematics, pose) = self.placed(q, link)?;
         let point = match point {
             Some(point) if point.iter().all(|x| x.is_finite()) => Vector3::from(point),
@@ -54,7 +55,7 @@ impl Robot {
         };
         let from_origin = point - kinematics.origin;
         let mut matrix = DMatrix::zeros(6, self.nv());
-        for_each_column(self, &kinematics, self.links[link].body, &from_origin, |k, column| {
+        for_each_column(self, &kinematics, self[link].body, &from_origin, |k, column| {
             matrix.column_mut(k).copy_from(&column);
         });
         Ok(matrix)
@@ -64,14 +65,14 @@ impl Robot {
     ///
     /// # Errors
     /// [`crate::Error::Input`] names the argument.
-    pub fn link_pose(&self, q: &[f64], link: usize) -> Result<Pose> {
+    pub fn link_pose(&self, q: &[f64], link: LinkIndex) -> Result<Pose> {
         Ok(self.placed(q, link)?.1)
     }
 
-    fn placed(&self, q: &[f64], link: usize) -> Result<(Kinematics, Pose)> {
+    fn placed(&self, q: &[f64], link: LinkIndex) -> Result<(Kinematics, Pose)> {
         self.check_configuration(q)?;
-        if link >= self.links.len() {
-            return Err(Error::input("link", format!("index {link} of {}", self.links.len())));
+        if link.get() >= self.links.len() {
+            return Err(Error::input("link", format!("index {} of {}", link.get(), self.links.len())));
         }
         let mut kinematics = Kinematics::new(self);
         kinematics.set_configuration(self, q);

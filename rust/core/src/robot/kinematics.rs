@@ -3,9 +3,12 @@
 //! Axes are the world's. Positions and spatial vectors refer to `origin`, a point at the base, so that sums over
 //! the tree need no transforms and a base far from the world's origin costs no digits.
 
+use std::ops::Index;
+
 use nalgebra::{Matrix3, Vector3};
 
 use super::description::JointKind;
+use super::ids::{BodyIndex, LinkIndex};
 use super::robot::{Robot, WORLD};
 use crate::spatial::Pose;
 
@@ -153,11 +156,24 @@ impl Kinematics {
     }
 
     /// A link's pose in the world.
-    pub fn link_pose(&self, robot: &Robot, link: usize) -> Pose {
-        let link = &robot.links[link];
+    pub fn link_pose(&self, robot: &Robot, link: LinkIndex) -> Pose {
+        let link = &robot[link];
         let body = &self.bodies[link.body];
         let pose = Pose { rotation: body.rotation, translation: body.position + self.origin };
         pose.compose(&link.placement)
+    }
+}
+
+/// The state of a body.
+///
+/// # Panics
+/// If it is the index of another robot's body.
+impl Index<BodyIndex> for Kinematics {
+    type Output = BodyState;
+
+    #[inline]
+    fn index(&self, body: BodyIndex) -> &BodyState {
+        &self.bodies[body.get()]
     }
 }
 

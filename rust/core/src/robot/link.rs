@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::ids::{BodyIndex, LinkIndex};
 use crate::error::{Error, Result};
 use crate::spatial::Pose;
 use crate::surface::Surface;
@@ -14,18 +15,19 @@ use crate::surface::Surface;
 /// let robot = Robot::example_arm();
 /// let link = &robot.links()[6];
 /// assert_eq!((link.name.as_str(), link.mass), ("link_7", 2.0));
-/// assert!(link.surface.is_some() && link.parent.is_some());
+/// assert!(link.surface.is_some() && link.parent() == Some(robot.link("link_6")?));
+/// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug)]
 pub struct Link {
     /// URDF name.
     pub name: String,
-    /// The body it is fixed to.
-    pub body: usize,
+    /// Index of the body it is fixed to.
+    pub(crate) body: usize,
     /// Link frame in the body's frame.
     pub(crate) placement: Pose,
-    /// The link that its joint, fixed or moving, hangs from; none for the root.
-    pub parent: Option<usize>,
+    /// Index of the link that its joint, fixed or moving, hangs from; none for the root.
+    pub(crate) parent: Option<usize>,
     /// Its own mass (kg).
     pub mass: f64,
     /// Its own centre of mass in the link frame (m).
@@ -34,6 +36,23 @@ pub struct Link {
     pub inertia: Matrix3<f64>,
     /// Its surface, in the link frame.
     pub surface: Option<Surface>,
+}
+
+impl Link {
+    /// The body it is fixed to.
+    pub fn body(&self) -> BodyIndex {
+        BodyIndex::new(self.body)
+    }
+
+    /// The link that its joint, fixed or moving, hangs from; none for the root.
+    pub fn parent(&self) -> Option<LinkIndex> {
+        self.parent.map(LinkIndex::new)
+    }
+
+    /// Link frame in the body's frame, whose z axis is the joint's.
+    pub fn placement(&self) -> &Pose {
+        &self.placement
+    }
 }
 
 /// Parents exist, lead to a root, and sit on the link's own body or one that carries it.

@@ -1,19 +1,21 @@
 //! The robot: a frozen tree of bodies, links and surfaces.
 
 use std::collections::HashMap;
+use std::ops::Index;
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::ancestry::Ancestry;
 use super::configuration::LARGEST;
 use super::description::{JointDescription, JointKind, RobotDescription};
+use super::ids::LinkIndex;
 use super::link::{check_link_tree, Link};
 use crate::error::{Error, Result};
 use crate::spatial::Pose;
 use crate::surface::Surface;
 
-/// The world's index among the bodies; body k is moved by the k-th joint.
-pub const WORLD: usize = 0;
+/// The world's number among the bodies; body k is moved by the k-th joint.
+pub(crate) const WORLD: usize = 0;
 
 /// A body and the joint that moves it. Frames are turned so that the joint axis is z.
 #[derive(Debug, Clone)]
@@ -49,9 +51,9 @@ pub struct Robot {
     pub(crate) bodies: Vec<Body>,
     joint_names: Vec<String>,
     pub(crate) links: Vec<Link>,
-    link_index: HashMap<String, usize>,
-    touchable: Vec<usize>,
-    body_links: Vec<Vec<usize>>,
+    link_index: HashMap<String, LinkIndex>,
+    touchable: Vec<LinkIndex>,
+    body_links: Vec<Vec<LinkIndex>>,
     chains: Vec<Vec<usize>>,
     ancestry: Ancestry,
     nq: usize,
@@ -163,7 +165,7 @@ impl Robot {
             if link.joint >= bodies.len() {
                 return Err(Error::model(format!("{owner}: its joint does not exist")).of(&owner));
             }
-            if link_index.insert(link.name.clone(), index).is_some() {
+            if link_index.insert(link.name.clone(), LinkIndex::new(index)).is_some() {
                 return Err(Error::model(format!("two links are named '{}'", link.name)).of(&owner));
             }
             check_size(&owner, link.mass, &link.inertia).map_err(|error| error.of(&owner))?;
@@ -177,8 +179,8 @@ impl Robot {
             } else {
                 let (surface, odd) = Surface::new(link.geometry).map_err(|error| error.within(&owner))?;
                 warnings.extend(odd.into_iter().map(|text| format!("{owner}: {text}")));
-                touchable.push(index);
-                body_links[link.joint].push(index);
+                touchable.push(LinkIndex::new(index));
+                body_links[link.joint].push(LinkIndex::new(index));
                 Some(surface)
             };
             frozen.push(Link {
@@ -249,18 +251,18 @@ impl Robot {
         self.bodies[1..].iter().map(|body| body.kind)
     }
 
-    /// All links, also those without surface.
+    /// All links, also those without surface; `robot[link]` is the one with an index.
     pub fn links(&self) -> &[Link] {
         &self.links
     }
 
     /// Indices of the links that have a surface.
-    pub fn touchable_links(&self) -> &[usize] {
+    pub fn touchable_links(&self) -> &[LinkIndex] {
         &self.touchable
     }
 
     /// Indices of the links with a surface that are fixed to a body.
-    pub(crate) fn links_of_body(&self, body: usize) -> &[usize] {
+    pub(crate) fn links_of_body(&self, body: usize) -> &[LinkIndex] {
         &self.body_links[body]
     }
 
@@ -300,11 +302,24 @@ impl Robot {
     ///
     /// # Errors
     /// [`Error::Input`] lists the names there are.
-    pub fn link(&self, name: &str) -> Result<usize> {
+    pub fn link(&self, name: &str) -> Result<LinkIndex> {
         self.link_index.get(name).copied().ok_or_else(|| {
             let names: Vec<&str> = self.links.iter().map(|link| link.name.as_str()).collect();
             Error::input("link", format!("there is no '{name}'; the links are {}", names.join(", ")))
         })
+    }
+}
+
+/// A link of this robot.
+///
+/// # Panics
+/// If it is the index of another robot's link.
+impl Index<LinkIndex> for Robot {
+    type Output = Link;
+
+    #[inline]
+    fn index(&self, link: LinkIndex) -> &Link {
+        &self.links[link.get()]
     }
 }
 

@@ -3,11 +3,13 @@
 pub(crate) mod distal_parts;
 mod exclusion;
 mod force_torque_sensor;
+mod ids;
 mod load_compensator;
 mod sensor_tree;
 
 pub(crate) use exclusion::sensor_torque;
 pub use force_torque_sensor::{Convention, ForceTorqueSensor};
+pub use ids::SensorIndex;
 pub(crate) use load_compensator::check_readings;
 pub use load_compensator::LoadCompensator;
 pub(crate) use sensor_tree::SensorTree;

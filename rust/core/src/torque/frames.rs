@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Matrix4, Matrix6, Matrix6x3, Matrix6x4, Vector3, Vector4
 
 use super::link_target::LinkTarget;
 use crate::robot::jacobian::for_each_column;
-use crate::robot::{Kinematics, Robot, WORLD};
+use crate::robot::{Kinematics, LinkIndex, Robot, WORLD};
 use crate::spatial::vector::{split, stack};
 use crate::spatial::Pose;
 
@@ -133,7 +133,7 @@ impl Frames {
     pub fn update(&mut self, robot: &Robot, kinematics: &Kinematics, deviation: &[f64]) {
         for &index in &self.wanted {
             let frame = &mut self.links[index];
-            frame.pose = kinematics.link_pose(robot, index);
+            frame.pose = kinematics.link_pose(robot, LinkIndex::new(index));
             // From the reference origin of the kinematics to the link's.
             let arm = frame.pose.translation - kinematics.origin;
             frame.gram = Matrix6::zeros();

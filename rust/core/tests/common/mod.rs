@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use contactsense::robot::{JointDescription, JointKind, LinkDescription, Robot, RobotDescription};
+use contactsense::robot::{JointDescription, JointKind, LinkDescription, LinkIndex, Robot, RobotDescription};
 use contactsense::spatial::Pose;
 use contactsense::surface::{Geometry, Part};
 use nalgebra::{Matrix3, Rotation3, Vector3};
@@ -157,7 +157,13 @@ pub fn numbers(count: usize, seed: f64) -> Vec<f64> {
 }
 
 /// External torque of a force at a point of a link [world frame].
-pub fn torque_of(robot: &Robot, q: &[f64], link: usize, point: [f64; 3], force: Vector3<f64>) -> Vec<f64> {
+pub fn torque_of(
+    robot: &Robot,
+    q: &[f64],
+    link: LinkIndex,
+    point: [f64; 3],
+    force: Vector3<f64>,
+) -> Vec<f64> {
     let jacobian = robot.jacobian(q, link, Some(point)).expect("a valid link");
     (jacobian.rows(0, 3).transpose() * force).as_slice().to_vec()
 }
@@ -165,7 +171,7 @@ pub fn torque_of(robot: &Robot, q: &[f64], link: usize, point: [f64; 3], force: 
 /// An arm in touch with a ball: its poses, and what a springy ball that stays puts on the joints.
 pub struct BallRun {
     /// Index of the touched link.
-    pub link: usize,
+    pub link: LinkIndex,
     pub poses: Vec<Vec<f64>>,
     pub torques: Vec<Vec<f64>>,
     /// Contact points, world frame [m].
@@ -177,7 +183,7 @@ pub fn ball_run(robot: &Robot, link: &str, updates: usize) -> BallRun {
     const RADIUS: f64 = 0.05;
     const STIFFNESS: f64 = 2500.0;
     let link = robot.link(link).expect("a link of the robot");
-    let surface = robot.links()[link].surface.as_ref().expect("a touchable link");
+    let surface = robot[link].surface.as_ref().expect("a touchable link");
     let start = configuration(robot, 0.4);
     let sample = surface.sample(1, 3)[0];
     let centre = robot

@@ -22,7 +22,7 @@ fn a_ball_is_found_on_meshes_and_on_primitives() {
             }
             let estimate = filter.estimate();
             let error = (estimate.point - run.points[39]).norm();
-            assert_eq!(estimate.link, Some(run.link), "{} {link}", robot.name());
+            assert_eq!(estimate.link, Some(run.link.get()), "{} {link}", robot.name());
             assert!(error < 5e-3, "{} {link}: {error}", robot.name());
             assert!(estimate.explained && !estimate.ambiguous && estimate.event == Event::Continued);
             let sum: f64 = estimate.link_probabilities.iter().sum();

@@ -4,7 +4,7 @@ use crate::common;
 use contactsense::isolation::{ContactIsolator, ContactPlace, IsolatorOptions};
 use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
 use contactsense::observer::MomentumObserver;
-use contactsense::sensor::{Convention, ForceTorqueSensor};
+use contactsense::sensor::{Convention, ForceTorqueSensor, SensorIndex};
 use contactsense::spatial::Pose;
 use contactsense::Error;
 use proptest::prelude::*;
@@ -150,7 +150,7 @@ proptest! {
                     // A sensor that comes back is left out for one more tick; the wanted one, for as long as the observer
                     // still knows too little of it.
                     let silent: Vec<bool> = rows.iter().map(Option::is_none).collect();
-                    let left_out = |sensor| report.sensors_left_out.contains(&sensor);
+                    let left_out = |sensor| report.sensors_left_out.contains(&SensorIndex::new(sensor));
                     for sensor in 0..2 {
                         let at_least = silent[sensor] || silent_before[sensor];
                         ever_silent[sensor] |= silent[sensor];

@@ -7,7 +7,7 @@ use crate::particle::instant::Instant;
 use crate::particle::spring::Slope;
 use crate::particle::weight;
 use crate::particle::window::Window;
-use crate::robot::{JointDescription, JointKind, LinkDescription, Robot, RobotDescription};
+use crate::robot::{JointDescription, JointKind, LinkDescription, LinkIndex, Robot, RobotDescription};
 use crate::spatial::Pose;
 use crate::surface::{Geometry, Part};
 use crate::torque::ForceModel;
@@ -65,7 +65,7 @@ fn window(robot: &Robot, torque: impl Fn(&[f64], &Pose) -> Vec<f64>) -> Window {
         let q: Vec<f64> = (0..robot.nv())
             .map(|i| 0.3 * (1.0 + i as f64).sin() + 0.02 * (1.3 * k as f64 + 2.1 * i as f64).sin())
             .collect();
-        instant.torque = torque(&q, &robot.link_pose(&q, link).expect("a valid link"));
+        instant.torque = torque(&q, &robot.link_pose(&q, LinkIndex::new(link)).expect("a valid link"));
         instant.deviation = instant.torque.iter().map(|torque| f64::hypot(0.02, 0.03 * torque)).collect();
         instant.update(robot, &q);
         window.take_in(&instant, link, 0.0);
@@ -96,7 +96,7 @@ fn ball(robot: &Robot, friction: f64) -> (Vector3<f64>, impl Fn(&[f64], &Pose) -
     let link = robot.links().len() - 1;
     let surface = robot.links()[link].surface.as_ref().expect("a capsule");
     let q: Vec<f64> = (0..robot.nv()).map(|i| 0.3 * (1.0 + i as f64).sin()).collect();
-    let start = robot.link_pose(&q, link).expect("a valid link");
+    let start = robot.link_pose(&q, LinkIndex::new(link)).expect("a valid link");
     // Pressed in by 12 mm, on the capsule's round end.
     let local = Vector3::new(0.3, 0.5, 0.9).normalize() * (0.05 + RADIUS - 0.012) + Vector3::z() * 0.18;
     let centre = start.transform_point(&local);
@@ -107,7 +107,7 @@ fn ball(robot: &Robot, friction: f64) -> (Vector3<f64>, impl Fn(&[f64], &Pose) -
         let size = STIFFNESS * (RADIUS - near.distance);
         assert!(size > 0.0, "the motions keep in touch");
         let force = -normal * size + normal.cross(&Vector3::z()).normalize() * (friction * size);
-        let jacobian = robot.jacobian(q, link, Some(point.into())).expect("a valid link");
+        let jacobian = robot.jacobian(q, LinkIndex::new(link), Some(point.into())).expect("a valid link");
         (jacobian.rows(0, 3).transpose() * force).as_slice().to_vec()
     };
     (centre, torque)
@@ -148,7 +148,7 @@ fn a_couple_is_no_obstacle() {
     let link = robot.links().len() - 1;
     let (centre, _) = ball(&robot, 0.0);
     let window = window(&robot, |q, pose| {
-        let jacobian = robot.jacobian(q, link, None).expect("a valid link");
+        let jacobian = robot.jacobian(q, LinkIndex::new(link), None).expect("a valid link");
         let couple = pose.rotation * Vector3::new(3.0, -2.0, 4.0);
         (jacobian.rows(3, 3).transpose() * couple).as_slice().to_vec()
     });
@@ -166,7 +166,7 @@ fn a_weight_explains_its_own_torques_and_not_those_of_a_ball() {
     let (centre, push) = ball(&robot, 0.0);
     let carried = |q: &[f64], pose: &Pose| {
         let place = pose.transform_point(&Vector3::new(0.02, -0.01, 0.2));
-        let jacobian = robot.jacobian(q, link, Some(place.into())).expect("a valid link");
+        let jacobian = robot.jacobian(q, LinkIndex::new(link), Some(place.into())).expect("a valid link");
         (jacobian.rows(0, 3).transpose() * Vector3::new(0.0, 0.0, -15.0)).as_slice().to_vec()
     };
     let down = -Vector3::z();

@@ -42,7 +42,7 @@ fn exact_torques_give_link_point_and_force() {
             let [contact] = &isolation.contacts[..] else { panic!("one contact expected: {what}") };
             if contact.located {
                 located += 1;
-                assert_eq!(robot.links()[contact.link].name, push.link, "{what}");
+                assert_eq!(robot[contact.link].name, push.link, "{what}");
                 assert!(error(contact, push) < EXACT, "{what}");
                 let force = Vector3::from(push.force);
                 let (found, place) = contact.force().zip(contact.place).expect(&what);
@@ -52,7 +52,7 @@ fn exact_torques_give_link_point_and_force() {
                 assert!(push.entries != [1, 0], "not located: {what}");
                 assert!(offered(isolation, contact, push), "{what}");
             } else {
-                assert_eq!(robot.links()[contact.link].name, push.link, "{what}");
+                assert_eq!(robot[contact.link].name, push.link, "{what}");
             }
             alone += usize::from(push.determined && push.entries == [1, 0]);
         }
