@@ -26,6 +26,7 @@ __all__ = [
     "Mode",
     "ModelError",
     "MomentumObserver",
+    "NoiseModel",
     "Particles",
     "RayHits",
     "Robot",
@@ -182,6 +183,25 @@ class LoadCompensator:
     ) -> NDArray[np.float64]: ...
 
 @final
+class NoiseModel:
+    def __new__(
+        cls,
+        *,
+        torque: ArrayLike = 0.05,
+        velocity: ArrayLike = 0.0,
+        relative: ArrayLike = 0.03,
+        model: ArrayLike = 0.1,
+    ) -> Self: ...
+    @property
+    def torque(self) -> float | NDArray[np.float64]: ...
+    @property
+    def velocity(self) -> float | NDArray[np.float64]: ...
+    @property
+    def relative(self) -> float | NDArray[np.float64]: ...
+    @property
+    def model(self) -> float | NDArray[np.float64]: ...
+
+@final
 class ContactIsolator:
     def __new__(
         cls,
@@ -193,6 +213,7 @@ class ContactIsolator:
         wanted_contacts: Iterable[str] | None = None,
         max_contacts: int | None = None,
         pushing: bool = True,
+        noise: NoiseModel | None = None,
         locate_within: float | None = None,
     ) -> Self: ...
     def isolate(self, q: ArrayLike, tau_ext: ArrayLike, wrenches: ArrayLike | None = None) -> Isolation: ...
@@ -336,6 +357,7 @@ class ContactParticleFilter:
         torque_noise: ArrayLike | None = None,
         relative_noise: float | None = None,
         torque_threshold: ArrayLike | None = None,
+        noise: NoiseModel | None = None,
     ) -> Self: ...
     def update(self, q: ArrayLike, tau_ext: ArrayLike, *, time: float | None = None) -> ContactEstimate: ...
     def reset(self) -> None: ...

@@ -53,7 +53,7 @@ fn noisy_torques(c: &mut Criterion) {
         for (kind, share, noise) in KINDS {
             let pushed: Vec<f64> = tau_ext.iter().map(|torque| share * torque).collect();
             let drawn: Vec<_> = (0..DRAWS).map(|k| common::noisy(&pushed, noise, k as f64)).collect();
-            let options = IsolatorOptions { torque_threshold: vec![3.0 * NOISE], ..Default::default() };
+            let options = IsolatorOptions { torque_threshold: Some(vec![3.0 * NOISE]), ..Default::default() };
             let mut isolator = ContactIsolator::new(robot.clone(), &options).expect("valid settings");
             let mut next = 0;
             group.bench_function(format!("{name}, {kind}"), |b| {

@@ -20,3 +20,4 @@ mod torque;
 
 pub use error::{Error, Result};
 pub use nalgebra;
+pub use torque::NoiseModel;

@@ -121,7 +121,7 @@ fn a_tick_allocates_nothing() {
         assert_eq!(allocations(work), 0, "isolator of {}", robot.name());
         assert!(located > 0 && open > 0, "both branches are run: {located}, {open}");
 
-        let options = IsolatorOptions { torque_threshold: vec![0.3], ..IsolatorOptions::default() };
+        let options = IsolatorOptions { torque_threshold: Some(vec![0.3]), ..IsolatorOptions::default() };
         let mut isolator = ContactIsolator::new(robot.clone(), &options).expect("valid options");
         let noisy: Vec<_> = (0..torques.len()).map(|k| common::noisy(&torques[k], 0.1, k as f64)).collect();
         let causeless: Vec<_> = (0..50).map(|k| common::noisy(&still, 30.0, f64::from(k))).collect();
@@ -134,7 +134,7 @@ fn a_tick_allocates_nothing() {
 
         let options = MonitorOptions {
             observer_gain: vec![500.0],
-            isolation: IsolatorOptions { torque_threshold: vec![0.01], ..IsolatorOptions::default() },
+            isolation: IsolatorOptions { torque_threshold: Some(vec![0.01]), ..IsolatorOptions::default() },
             hold_time: 0.01,
             bias_time_constant: Some(0.02),
             bias_settle_time: Some(5.0),

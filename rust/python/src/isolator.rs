@@ -13,6 +13,7 @@ use pyo3::types::PyTuple;
 use crate::arguments::{pushing, robot, sole, whole, Number};
 use crate::arrays::{Readings, Vector};
 use crate::errors::to_python;
+use crate::noise::noise_model;
 use crate::observer::scalar_or_vector;
 use crate::returned::vector;
 use crate::robot::PyRobot;
@@ -246,7 +247,8 @@ pub fn contact_count(object: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
 /// several solutions are candidates.
 ///
 /// `sensors`: of `ForceTorqueSensor`, in the order of the wrenches. `torque_threshold`: scalar or `(nv,)` [Nm, N], default
-/// 1e-3; a joint feels a contact above it, and a third of it is the scale of the torques' errors. `wrench_threshold`: the
+/// 1e-3; a joint feels a contact above it, and a third of it is the scale of the torques' errors. `noise`: a `NoiseModel` in
+/// place of that scale; then the default of `torque_threshold` is three standard deviations of the torques at rest. `wrench_threshold`: the
 /// same for wrenches, scalar, `(6,)` or `(n_sensors, 6)` [N, Nm], default 1e-3. `wanted_contacts`: names of sensors whose
 /// contacts are meant and not reported (eq. 20). `max_contacts`: reported at most. `pushing`: forces push on the surface
 /// (if False the point cannot be determined: `located` is False). `locate_within` [m], default 0.05: a contact is located
@@ -267,7 +269,7 @@ struct State {
 impl PyContactIsolator {
     #[new]
     #[pyo3(signature = (robot, *, sensors=None, torque_threshold=None, wrench_threshold=None, wanted_contacts=None,
-                        max_contacts=None, pushing=true, locate_within=None))]
+                        max_contacts=None, pushing=true, noise=None, locate_within=None))]
     #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
         #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
@@ -277,6 +279,7 @@ impl PyContactIsolator {
         wanted_contacts: Option<&Bound<'_, PyAny>>,
         max_contacts: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = pushing)] pushing: bool,
+        noise: Option<&Bound<'_, PyAny>>,
         locate_within: Option<Number<'_, '_>>,
     ) -> PyResult<Self> {
         let mut options =
@@ -287,8 +290,12 @@ impl PyContactIsolator {
         if let Some(sensors) = sensors {
             options.sensors = self::sensors(sensors)?;
         }
+        if let Some(noise) = noise {
+            // The thresholds follow from it, too.
+            (options.noise, options.torque_threshold) = (Some(noise_model(noise)?), None);
+        }
         if let Some(threshold) = torque_threshold {
-            options.torque_threshold = scalar_or_vector("torque_threshold", threshold)?;
+            options.torque_threshold = Some(scalar_or_vector("torque_threshold", threshold)?);
         }
         if let Some(threshold) = wrench_threshold {
             options.wrench_threshold = wrench_thresholds(threshold)?;

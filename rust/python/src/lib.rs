@@ -13,6 +13,7 @@ mod errors;
 mod estimate;
 mod isolator;
 mod monitor;
+mod noise;
 mod observer;
 mod particle;
 mod returned;
@@ -35,6 +36,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<observer::PyMomentumObserver>()?;
     module.add_class::<sensor::PyForceTorqueSensor>()?;
     module.add_class::<compensator::PyLoadCompensator>()?;
+    module.add_class::<noise::PyNoiseModel>()?;
     module.add_class::<isolator::PyContactIsolator>()?;
     module.add_class::<isolator::PyIsolation>()?;
     module.add_class::<isolator::PyContact>()?;

@@ -178,7 +178,7 @@ impl PyContactMonitor {
             options.observer_gain = scalar_or_vector("observer_gain", gain)?;
         }
         if let Some(threshold) = torque_threshold {
-            options.isolation.torque_threshold = scalar_or_vector("torque_threshold", threshold)?;
+            options.isolation.torque_threshold = Some(scalar_or_vector("torque_threshold", threshold)?);
         }
         if let Some(threshold) = wrench_threshold {
             options.isolation.wrench_threshold = wrench_thresholds(threshold)?;

@@ -17,6 +17,7 @@ use crate::arguments::{number_if_any, robot, sole, whole, Number};
 use crate::arrays::Vector;
 use crate::errors::{input, to_python};
 use crate::estimate::PyContactEstimate;
+use crate::noise::noise_model;
 use crate::observer::scalar_or_vector;
 use crate::returned::from_rows;
 use crate::robot::PyRobot;
@@ -53,8 +54,9 @@ pub struct Particles {
 ///
 /// `likelihood`: "gaussian" (default; force and stiffness are integrated out) or "exponential" (eq. 5, both are drawn at
 /// random). `torque_noise`: standard deviation at rest, scalar or `(nv,)` [Nm], default 0.02; `relative_noise`: relative
-/// to the torque, default 0.03. Greater noise is learnt from what is left over. `torque_threshold`: below it on every
-/// joint there is no contact, scalar or `(nv,)` [Nm], default 0.06.
+/// to the torque, default 0.03; a tenth of it also of the largest torque. `noise`: a `NoiseModel` in place of these two.
+/// Greater noise is learnt from what is left over. `torque_threshold`: below it on every joint there is no contact, scalar
+/// or `(nv,)` [Nm], default three standard deviations at rest (0.06).
 ///
 /// `schedule`: None (by what the data show), "paper", or a dict of some of "sharpness" (alpha, [1/Nm]), "point_noise" [m],
 /// "force_noise" and "stiffness_noise" (relative), each a number or a pair (first, last), and "updates", after which the
@@ -76,10 +78,10 @@ impl PyContactParticleFilter {
     #[new]
     #[pyo3(signature = (robot, *, particles=None, motion=Choice::of("curvature"), measurement=Choice::of("normal"), friction=None, links=None, seed=None,
         force_range=None, stiffness_range=None, radius_range=None, schedule=None, threads=None,
-        likelihood=Choice::of("gaussian"), torque_noise=None, relative_noise=None, torque_threshold=None),
+        likelihood=Choice::of("gaussian"), torque_noise=None, relative_noise=None, torque_threshold=None, noise=None),
         text_signature = "(robot, *, particles=None, motion='curvature', measurement='normal', friction=None, links=None, \
             seed=None, force_range=None, stiffness_range=None, radius_range=None, schedule=None, threads=None, \
-            likelihood='gaussian', torque_noise=None, relative_noise=None, torque_threshold=None)")]
+            likelihood='gaussian', torque_noise=None, relative_noise=None, torque_threshold=None, noise=None)")]
     #[allow(clippy::too_many_arguments)] // named in Python
     fn new(
         #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
@@ -98,6 +100,7 @@ impl PyContactParticleFilter {
         torque_noise: Option<&Bound<'_, PyAny>>,
         relative_noise: Option<Number>,
         torque_threshold: Option<&Bound<'_, PyAny>>,
+        noise: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let py = robot.py();
         let cone = ForceModel::FrictionCone(friction.map_or(0.5, |friction| friction.0));
@@ -143,6 +146,10 @@ impl PyContactParticleFilter {
                 *range = Vector::new(name, object)?.fixed::<2>(py, name)?;
             }
         }
+        if noise.is_some() && (torque_noise.is_some() || relative_noise.is_some()) {
+            return Err(input(py, "noise: give it or torque_noise and relative_noise, not both".into()));
+        }
+        options.noise = noise.map(noise_model).transpose()?;
         if let Some(noise) = torque_noise {
             options.torque_noise = scalar_or_vector("torque_noise", noise)?;
         }
@@ -150,7 +157,7 @@ impl PyContactParticleFilter {
             options.relative_noise = noise.0;
         }
         if let Some(threshold) = torque_threshold {
-            options.torque_threshold = scalar_or_vector("torque_threshold", threshold)?;
+            options.torque_threshold = Some(scalar_or_vector("torque_threshold", threshold)?);
         }
         options.schedule = read_schedule(py, schedule)?;
         let robot = robot.get().0.clone();

@@ -14,11 +14,12 @@ use super::rows::{Root, TorqueRows, WrenchRows};
 use super::several::SeveralContacts;
 use super::tips::TipSearch;
 use super::wrench::WrenchEstimate;
-use crate::detection::{check_threshold, check_wrench_threshold, is_over};
+use crate::detection::{check_wrench_threshold, is_over};
 use crate::error::{Error, Result};
 use crate::observer::WrenchObserver;
 use crate::robot::{Kinematics, LinkIndex, Robot};
 use crate::sensor::SensorTree;
+use crate::torque::TorqueNoise;
 
 /// All hits of one instant that are kept.
 const CANDIDATES: usize = 512;
@@ -63,7 +64,8 @@ pub(super) const LEFT_OVER: f64 = 0.05;
 #[derive(Debug, Clone)]
 pub struct ContactIsolator {
     pub(super) robot: Arc<Robot>,
-    pub(super) threshold: Vec<f64>,
+    threshold: Vec<f64>,
+    pub(super) noise: TorqueNoise,
     pub(super) wrench_threshold: Vec<Vector6<f64>>,
     pub(super) max_contacts: usize,
     pub(super) pushing: bool,
@@ -78,7 +80,7 @@ pub struct ContactIsolator {
     /// What each joint feels of contacts in its region, and the size of what sensors have explained of it.
     pub(super) residual: Vec<f64>,
     pub(super) measured: Vec<f64>,
-    /// The thresholds, with those of the sensors that were subtracted.
+    /// Three standard deviations of the torques at rest, with the thresholds of the sensors that were subtracted.
     pub(super) limit: Vec<f64>,
     pub(super) tips: TipSearch,
     pub(super) bodies: BodySet,
@@ -99,7 +101,7 @@ impl ContactIsolator {
     /// # Errors
     /// [`Error::Input`] names the option.
     pub fn new(robot: Arc<Robot>, options: &IsolatorOptions) -> Result<Self> {
-        let threshold = check_threshold(&robot, &options.torque_threshold)?;
+        let (threshold, noise) = options.threshold_and_noise(&robot)?;
         options.check()?;
         let tree = SensorTree::new(&robot, &options.sensors)?;
         let wrench_threshold = check_wrench_threshold(&tree, &options.wrench_threshold)?;
@@ -125,8 +127,9 @@ impl ContactIsolator {
             sensed: vec![0.0; nv],
             residual: vec![0.0; nv],
             measured: vec![0.0; nv],
-            limit: threshold.clone(),
+            limit: noise.threshold(),
             threshold,
+            noise,
             tips: TipSearch::new(&robot),
             bodies: BodySet::new(&robot),
             line: LineCast::new(),
@@ -300,7 +303,8 @@ impl ContactIsolator {
     }
 
     fn set_rows(&mut self, kinematics: &Kinematics, root: Option<&Root>, widened: bool) {
-        self.rows.set(&self.robot, kinematics, &self.residual, &self.measured, &self.limit, widened);
+        let noise = widened.then_some(&self.noise);
+        self.rows.set(&self.robot, kinematics, &self.residual, &self.measured, &self.limit, noise);
         self.rows.root = root.map(|root| if widened { *root } else { root.narrow() });
     }
 

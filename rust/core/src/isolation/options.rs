@@ -1,7 +1,10 @@
 //! Options of the isolator.
 
+use crate::detection::check_threshold;
 use crate::error::{Error, Result};
+use crate::robot::Robot;
 use crate::sensor::ForceTorqueSensor;
+use crate::torque::{NoiseModel, TorqueNoise, LEVEL};
 
 /// Default of [`IsolatorOptions::locate_within`]: about the width of a hand's contact (m).
 const LOCATE_WITHIN: f64 = 0.05;
@@ -23,8 +26,11 @@ const LOCATE_WITHIN: f64 = 0.05;
 /// ```
 #[derive(Debug, Clone)]
 pub struct IsolatorOptions {
-    /// Per velocity variable, or one for all (Nm, N). Also the scale of the torques' errors.
-    pub torque_threshold: Vec<f64>,
+    /// A torque is felt above it: per velocity variable, or one for all (Nm, N). None for three standard deviations of
+    /// `noise` at rest.
+    pub torque_threshold: Option<Vec<f64>>,
+    /// Errors of the torques. None for a third of the thresholds, and a hundredth of the torque.
+    pub noise: Option<NoiseModel>,
     /// Contacts reported at most.
     pub max_contacts: usize,
     /// Whether forces push on the surface (they may pull otherwise, and the point stays open).
@@ -42,7 +48,8 @@ pub struct IsolatorOptions {
 impl Default for IsolatorOptions {
     fn default() -> Self {
         Self {
-            torque_threshold: vec![1e-3],
+            torque_threshold: Some(vec![1e-3]),
+            noise: None,
             max_contacts: 5,
             pushing: true,
             sensors: vec![],
@@ -53,7 +60,27 @@ impl Default for IsolatorOptions {
     }
 }
 
+/// What torques err by relative to a contact's own, where thresholds are all that is given.
+const RELATIVE_NOISE: f64 = 0.01;
+
 impl IsolatorOptions {
+    /// The thresholds on torques, and what these err by.
+    ///
+    /// # Errors
+    /// [`Error::Input`] names the option.
+    pub(crate) fn threshold_and_noise(&self, robot: &Robot) -> Result<(Vec<f64>, TorqueNoise)> {
+        let given = self.torque_threshold.as_ref().map(|given| check_threshold(robot, given)).transpose()?;
+        let noise = match (&self.noise, &given) {
+            (Some(noise), _) => noise.of(robot)?,
+            (None, Some(threshold)) => {
+                let deviation = threshold.iter().map(|threshold| threshold / LEVEL).collect();
+                NoiseModel::short(deviation, RELATIVE_NOISE).of(robot)?
+            }
+            (None, None) => NoiseModel::default().of(robot)?,
+        };
+        Ok((given.unwrap_or_else(|| noise.threshold()), noise))
+    }
+
     /// # Errors
     /// [`Error::Input`] names the option.
     pub(super) fn check(&self) -> Result<()> {

@@ -6,13 +6,12 @@ use super::region::Region;
 use super::wrench::{WrenchEstimate, ORIGIN};
 use crate::robot::jacobian::jacobian_column;
 use crate::robot::{Kinematics, Robot};
+use crate::torque::{largest, TorqueNoise, LEVEL};
 
 /// Balances moments against forces in rank decisions: a typical lever arm (m).
 pub(super) const LEVER: f64 = 0.3;
-/// Sensors and models err by a part of what they measure, too: three standard deviations, as the threshold is.
-pub(super) const TORQUE_SHARE: f64 = 0.03;
-/// And a part of what the strongest joint feels; it also keeps weights of similar size, as rank decisions need.
-const LARGEST_SHARE: f64 = 0.003;
+/// Force/torque sensors err by a part of what they measure, too: three standard deviations, as the threshold is.
+pub(super) const SENSOR_SHARE: f64 = 0.03;
 /// Rows that one factorisation takes in: six of the triangle so far and six new ones.
 const BLOCK: usize = 12;
 
@@ -66,7 +65,7 @@ impl TorqueRows {
     }
 
     /// `measured` is the part of the torque that sensors have explained already: it errs, too. Tolerances are the
-    /// thresholds, `widened` by shares of the torques or not.
+    /// thresholds, widened by the noise that grows with the torques where that is given.
     pub fn set(
         &mut self,
         robot: &Robot,
@@ -74,7 +73,7 @@ impl TorqueRows {
         torque: &[f64],
         measured: &[f64],
         threshold: &[f64],
-        widened: bool,
+        noise: Option<&TorqueNoise>,
     ) {
         for body in 1..robot.body_count() {
             for (column, k) in robot.velocity_range(body).enumerate() {
@@ -82,11 +81,13 @@ impl TorqueRows {
             }
         }
         self.torque.copy_from_slice(torque);
-        let largest = torque.iter().fold(0.0_f64, |largest, torque| largest.max(torque.abs()));
         self.tolerance.copy_from_slice(threshold);
-        for (k, tolerance) in self.tolerance.iter_mut().enumerate().filter(|_| widened) {
-            let shares = (TORQUE_SHARE * torque[k]).hypot(LARGEST_SHARE * largest);
-            *tolerance = shares.hypot(TORQUE_SHARE * measured[k]).hypot(threshold[k]);
+        if let Some(noise) = noise {
+            let largest = largest(torque);
+            for (k, tolerance) in self.tolerance.iter_mut().enumerate() {
+                let growing = noise.growing(k, LEVEL, torque[k], largest);
+                *tolerance = growing.hypot(SENSOR_SHARE * measured[k]).hypot(threshold[k]);
+            }
         }
         self.root = None;
     }

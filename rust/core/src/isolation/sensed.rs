@@ -6,7 +6,7 @@ use super::found::{Entry, Found, Scene};
 use super::isolator::{ContactIsolator, CONTRADICTION, LEFT_OVER};
 use super::line::best_first;
 use super::result::Contact;
-use super::rows::{Root, TORQUE_SHARE};
+use super::rows::{Root, SENSOR_SHARE};
 use super::wrench::WrenchEstimate;
 use crate::detection::is_over;
 use crate::observer::WrenchObserver;
@@ -14,6 +14,7 @@ use crate::robot::jacobian::jacobian_column;
 use crate::robot::Kinematics;
 use crate::sensor::{sensor_torque, SensorIndex};
 use crate::spatial::vector::{split, stack};
+use crate::torque::LEVEL;
 
 /// Moment along the force that rounding leaves [tolerances].
 const EXACT: f64 = 1e-6;
@@ -30,9 +31,11 @@ impl ContactIsolator {
     ) {
         self.residual.copy_from_slice(torque);
         self.measured.fill(0.0);
-        let Self { robot, regions, residual, measured, limit, active, sensed, wrench_threshold, .. } = self;
+        let Self {
+            robot, regions, residual, measured, limit, noise, active, sensed, wrench_threshold, ..
+        } = self;
         let power = if wrenches.is_empty() { 1 } else { 2 };
-        limit.iter_mut().zip(&self.threshold).for_each(|(limit, threshold)| *limit = threshold.powi(power));
+        limit.iter_mut().zip(noise.at_rest()).for_each(|(limit, noise)| *limit = (LEVEL * noise).powi(power));
         active.clear();
         active.extend(wrenches.iter().map(Option::is_some));
         regions.set_active(robot, active);
@@ -124,7 +127,7 @@ impl ContactIsolator {
                 stack(&position.cross(&axis), &axis)
             }
         });
-        let tolerance = std::array::from_fn(|i| limits[i].hypot(TORQUE_SHARE * spread[i]));
+        let tolerance = std::array::from_fn(|i| limits[i].hypot(SENSOR_SHARE * spread[i]));
         (Root { axes, value: value.into(), tolerance, threshold: limits.into() }, spread)
     }
 

@@ -70,10 +70,10 @@ impl ContactMonitor {
                 }
             })?;
         let tree = SensorTree::new(&robot, &options.isolation.sensors)?;
-        let threshold = &options.isolation.torque_threshold;
+        let (threshold, _) = options.isolation.threshold_and_noise(&robot)?;
         let detector = Detector::new(
             robot.clone(),
-            threshold,
+            &threshold,
             &tree,
             &options.isolation.wrench_threshold,
             options.hold_time,

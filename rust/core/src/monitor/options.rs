@@ -15,11 +15,11 @@ use crate::robot::{JointKind, Robot};
 ///
 /// // A model that is a little off: its error is learnt within some seconds without contact.
 /// let mut options = MonitorOptions { bias_time_constant: Some(1.0), ..MonitorOptions::new(1e-3) };
-/// options.isolation.torque_threshold = vec![2.0];
+/// options.isolation.torque_threshold = Some(vec![2.0]);
 /// let monitor = ContactMonitor::new(Arc::new(Robot::example_arm()), &options)?;
 /// assert_eq!((monitor.dt(), monitor.bias()), (1e-3, Some(&[0.0; 7][..])));
 ///
-/// options.isolation.torque_threshold = vec![2.0, 1.0];
+/// options.isolation.torque_threshold = Some(vec![2.0, 1.0]);
 /// assert!(ContactMonitor::new(Arc::new(Robot::example_arm()), &options).is_err());
 /// # Ok::<(), contactsense::Error>(())
 /// ```
@@ -62,7 +62,7 @@ impl MonitorOptions {
             observer_gain: vec![50.0],
             wrench_gain: None,
             isolation: IsolatorOptions {
-                torque_threshold: vec![0.5],
+                torque_threshold: Some(vec![0.5]),
                 wrench_threshold: vec![2.0],
                 ..IsolatorOptions::default()
             },

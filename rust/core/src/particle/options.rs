@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use super::schedule::Schedule;
 use crate::error::{Error, Result};
 use crate::robot::{Robot, LARGEST, WORLD};
-use crate::torque::ForceModel;
+use crate::torque::{ForceModel, NoiseModel, TorqueNoise};
 
 /// How a contact moves with the robot.
 ///
@@ -87,8 +87,11 @@ pub struct FilterOptions {
     pub torque_noise: Vec<f64>,
     /// Standard deviation of a torque relative to its size.
     pub relative_noise: f64,
-    /// Below it on every joint there is no contact, one for all or one a joint (Nm).
-    pub torque_threshold: Vec<f64>,
+    /// Below it on every joint there is no contact, one for all or one a joint (Nm). None for three standard deviations of
+    /// the noise at rest.
+    pub torque_threshold: Option<Vec<f64>>,
+    /// Errors of the torques, in place of `torque_noise` and `relative_noise`, which are a short form of it.
+    pub noise: Option<NoiseModel>,
     /// How sharpness and noise change.
     pub schedule: Schedule,
     /// How many threads share a step.
@@ -109,7 +112,8 @@ impl Default for FilterOptions {
             radius_range: [5e-3, 1.0],
             torque_noise: vec![0.02],
             relative_noise: 0.03,
-            torque_threshold: vec![0.06],
+            torque_threshold: None,
+            noise: None,
             schedule: Schedule::Adaptive,
             threads: 1,
         }
@@ -171,8 +175,25 @@ impl FilterOptions {
         Ok(wanted)
     }
 
+    /// What the torques err by.
+    pub(super) fn torque_noise(&self, robot: &Robot) -> Result<TorqueNoise> {
+        match &self.noise {
+            Some(noise) => noise.of(robot),
+            None => {
+                let torque = Self::per_joint(robot, "torque_noise", &self.torque_noise)?;
+                NoiseModel::short(torque, self.relative_noise).of(robot)
+            }
+        }
+    }
+
+    /// Below these torques on every joint there is no contact.
+    pub(super) fn threshold(&self, robot: &Robot, noise: &TorqueNoise) -> Result<Vec<f64>> {
+        let given = self.torque_threshold.as_ref();
+        given.map_or_else(|| Ok(noise.threshold()), |given| Self::per_joint(robot, "torque_threshold", given))
+    }
+
     /// One positive number a velocity variable.
-    pub(super) fn per_joint(robot: &Robot, name: &'static str, values: &[f64]) -> Result<Vec<f64>> {
+    fn per_joint(robot: &Robot, name: &'static str, values: &[f64]) -> Result<Vec<f64>> {
         let all = robot.per_velocity(name, values)?;
         match all.iter().find(|x| !(LEAST_TORQUE..LARGEST).contains(*x)) {
             Some(value) => Err(Error::input(name, format!("must be at least {LEAST_TORQUE:e}, got {value}"))),

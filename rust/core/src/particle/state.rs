@@ -22,10 +22,11 @@ use super::resampling::{effective_share, normalise};
 use super::response::ResponseModel;
 use super::schedule::Noise;
 use super::search::EstimatedPush;
-use crate::detection::Gate;
+use crate::detection::{is_over, Gate};
 use crate::error::Result;
 use crate::math::random::Stream;
 use crate::robot::Robot;
+use crate::torque::{TorqueNoise, LEVEL};
 
 mod renewal;
 
@@ -49,7 +50,7 @@ pub(super) struct FilterState {
     pub options: FilterOptions,
     /// Set to stop a step from another thread.
     pub stop: Arc<AtomicBool>,
-    torque_noise: Vec<f64>,
+    noise: TorqueNoise,
     gate: Gate,
     /// Whether a velocity variable is a rotation's.
     turning: Vec<bool>,
@@ -80,17 +81,15 @@ impl FilterState {
         let count = options.particles;
         // All of it at once, so that a part is not filled in vain.
         drop(space::<[u8; PARTICLE]>(count)?);
-        let torque_noise = FilterOptions::per_joint(&robot, "torque_noise", &options.torque_noise)?;
+        let noise = options.torque_noise(&robot)?;
+        let threshold = options.threshold(&robot, &noise)?;
         let births = Births::new(&robot, &wanted, &options)?;
         let links = wanted.len();
         let instant = Instant::new(&robot, wanted);
         Ok(Self {
-            check: Check::new(&robot, &instant, &options, torque_noise.clone()),
-            torque_noise,
-            gate: Gate::with_hysteresis(
-                FilterOptions::per_joint(&robot, "torque_threshold", &options.torque_threshold)?,
-                RELEASE,
-            ),
+            check: Check::new(&robot, &instant, &options, noise.clone()),
+            noise,
+            gate: Gate::with_hysteresis(threshold, RELEASE),
             turning: turning(&robot),
             births,
             estimate: ContactEstimate::new(links, MOST_MODES),
@@ -128,11 +127,9 @@ impl FilterState {
         self.robot.check_configuration(q)?;
         self.robot.check_tangent("tau_ext", tau_ext)?;
         self.instant.torque.copy_from_slice(tau_ext);
-        for ((noise, least), tau) in self.instant.deviation.iter_mut().zip(&self.torque_noise).zip(tau_ext) {
-            *noise = match self.options.likelihood {
-                Likelihood::Gaussian => least.hypot(self.options.relative_noise * tau),
-                Likelihood::Exponential => 1.0,
-            };
+        match self.options.likelihood {
+            Likelihood::Gaussian => self.noise.set_deviations(tau_ext, &mut self.instant.deviation),
+            Likelihood::Exponential => self.instant.deviation.fill(1.0),
         }
         self.instant.update(&self.robot, q);
         Ok(())
@@ -245,7 +242,7 @@ impl FilterState {
         if let Some(sharpness) = noise.sharpness {
             let unit = match self.options.likelihood {
                 Likelihood::Exponential => 1.0,
-                Likelihood::Gaussian => self.torque_noise.iter().copied().fold(f64::INFINITY, f64::min),
+                Likelihood::Gaussian => self.noise.at_rest().iter().copied().fold(f64::INFINITY, f64::min),
             };
             weighing.variance = 1.0 / (sharpness * unit).powi(2);
         } else {
@@ -278,7 +275,7 @@ impl FilterState {
     /// How many joints feel the contact.
     fn active_joints(&self) -> usize {
         let torque = self.instant.torque.iter();
-        torque.zip(&self.torque_noise).filter(|(torque, noise)| torque.abs() > 3.0 * **noise).count()
+        torque.zip(self.noise.at_rest()).filter(|(torque, noise)| is_over(**torque, LEVEL * **noise)).count()
     }
 
     /// What the best particle leaves over.

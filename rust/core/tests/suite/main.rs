@@ -8,5 +8,6 @@ mod dynamics;
 mod errors;
 mod golden;
 mod mutated_files;
+mod noise_model;
 mod particle_filter;
 mod properties;

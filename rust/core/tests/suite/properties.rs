@@ -37,7 +37,7 @@ fn sensible(values: &[f64], length: usize) -> bool {
 fn options() -> MonitorOptions {
     MonitorOptions {
         observer_gain: vec![500.0],
-        isolation: IsolatorOptions { torque_threshold: vec![0.1], ..IsolatorOptions::default() },
+        isolation: IsolatorOptions { torque_threshold: Some(vec![0.1]), ..IsolatorOptions::default() },
         hold_time: 0.01,
         bias_time_constant: Some(0.003),
         bias_settle_time: None,

@@ -13,7 +13,8 @@ const NEAR: f64 = 0.01;
 const SIGMAS: f64 = 4.0;
 
 fn isolator(name: &str, torque_threshold: f64) -> ContactIsolator {
-    let options = IsolatorOptions { torque_threshold: vec![torque_threshold], ..IsolatorOptions::default() };
+    let options =
+        IsolatorOptions { torque_threshold: Some(vec![torque_threshold]), ..IsolatorOptions::default() };
     ContactIsolator::new(robot(name), &options).expect("valid options")
 }
 

@@ -1,0 +1,126 @@
+//! How large the errors of an external torque are: the one meaning of noise for detection, isolation and posteriors.
+
+use crate::error::{Error, Result};
+use crate::robot::{Robot, LARGEST};
+
+/// Errors of the external torque of the untouched robot, each as one standard deviation: one number for all velocity
+/// variables, or one for each.
+///
+/// ```
+/// use contactsense::isolation::{ContactIsolator, IsolatorOptions};
+/// use contactsense::robot::Robot;
+/// use contactsense::NoiseModel;
+///
+/// // Torques that are 0.2 Nm off at rest and err by 5 % of what a contact causes.
+/// let noise = NoiseModel { torque: vec![0.05], model: vec![0.2], relative: vec![0.05], ..NoiseModel::default() };
+/// let options = IsolatorOptions { noise: Some(noise), torque_threshold: None, ..IsolatorOptions::default() };
+/// assert!(ContactIsolator::new(Robot::example_arm().into(), &options).is_ok());
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct NoiseModel {
+    /// White noise of the torque, per sample (Nm; N for sliding joints).
+    pub torque: Vec<f64>,
+    /// White noise of the velocity, per sample (rad/s; m/s for sliding joints). It acts through the gain of an observer and
+    /// the mass matrix; what is given an external torque, as the isolator and the filter are, leaves it out.
+    pub velocity: Vec<f64>,
+    /// Share of the contact's own torque.
+    pub relative: Vec<f64>,
+    /// Slow errors left over: bias, friction, masses (Nm; N for sliding joints).
+    pub model: Vec<f64>,
+}
+
+impl Default for NoiseModel {
+    fn default() -> Self {
+        NoiseModel { torque: vec![0.05], velocity: vec![0.0], relative: vec![0.03], model: vec![0.1] }
+    }
+}
+
+/// A torque at rest is no noise beyond so many standard deviations: that many are a threshold.
+pub(crate) const LEVEL: f64 = 3.0;
+/// Every joint also errs by this share of the relative error of the torque that is largest: gears and flexible links pass on
+/// what their neighbours feel.
+const LARGEST_SHARE: f64 = 0.1;
+
+impl NoiseModel {
+    /// White noise of a torque at rest and a share of the torque: all that most callers know.
+    pub(crate) fn short(torque: Vec<f64>, relative: f64) -> Self {
+        NoiseModel { torque, velocity: vec![0.0], relative: vec![relative], model: vec![0.0] }
+    }
+
+    /// Whether every number can be a standard deviation.
+    ///
+    /// # Errors
+    /// [`Error::Input`] names the field.
+    pub fn check(&self) -> Result<()> {
+        for (name, values) in [
+            ("torque", &self.torque),
+            ("velocity", &self.velocity),
+            ("relative", &self.relative),
+            ("model", &self.model),
+        ] {
+            if let Some(value) = values.iter().find(|x| !(0.0..LARGEST).contains(*x)) {
+                return Err(Error::input(name, format!("must be finite and not negative, not {value}")));
+            }
+        }
+        Ok(())
+    }
+
+    /// For one robot, by velocity variable.
+    ///
+    /// # Errors
+    /// [`Error::Input`] names the field.
+    pub(crate) fn of(&self, robot: &Robot) -> Result<TorqueNoise> {
+        self.check()?;
+        robot.per_velocity("noise.velocity", &self.velocity)?;
+        let torque = robot.per_velocity("noise.torque", &self.torque)?;
+        let model = robot.per_velocity("noise.model", &self.model)?;
+        let relative = robot.per_velocity("noise.relative", &self.relative)?;
+        let at_rest: Vec<f64> =
+            torque.iter().zip(&model).map(|(torque, model)| torque.hypot(*model)).collect();
+        if at_rest.contains(&0.0) {
+            return Err(Error::input("noise.torque", "must be positive where noise.model is zero"));
+        }
+        Ok(TorqueNoise { at_rest, relative })
+    }
+}
+
+/// The noise of one robot's external torque, by velocity variable.
+#[derive(Debug, Clone)]
+pub(crate) struct TorqueNoise {
+    at_rest: Vec<f64>,
+    relative: Vec<f64>,
+}
+
+impl TorqueNoise {
+    /// Standard deviations where nothing touches (Nm).
+    pub fn at_rest(&self) -> &[f64] {
+        &self.at_rest
+    }
+
+    /// What a torque at rest does not exceed (Nm).
+    pub fn threshold(&self) -> Vec<f64> {
+        self.at_rest.iter().map(|deviation| LEVEL * deviation).collect()
+    }
+
+    /// So many standard deviations of the part of the errors that grows with the contact's torque, on velocity variable
+    /// `k` (Nm); `largest` is the magnitude of the largest torque.
+    #[inline]
+    pub fn growing(&self, k: usize, level: f64, torque: f64, largest: f64) -> f64 {
+        let share = level * self.relative[k];
+        (share * torque).hypot(share * LARGEST_SHARE * largest)
+    }
+
+    /// Sets the standard deviation of each torque (Nm).
+    pub fn set_deviations(&self, torque: &[f64], deviations: &mut [f64]) {
+        let largest = largest(torque);
+        for (k, deviation) in deviations.iter_mut().enumerate() {
+            *deviation = self.growing(k, 1.0, torque[k], largest).hypot(self.at_rest[k]);
+        }
+    }
+}
+
+/// The magnitude of the largest torque.
+#[inline]
+pub(crate) fn largest(torque: &[f64]) -> f64 {
+    torque.iter().fold(0.0_f64, |largest, torque| largest.max(torque.abs()))
+}

@@ -1,0 +1,101 @@
+//! `NoiseModel`.
+
+use contactsense::NoiseModel;
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+use crate::errors::{input, to_python};
+use crate::observer::scalar_or_vector;
+
+/// Errors of the external torque of the untouched robot, each as one standard deviation. What says how large errors are
+/// takes it as `noise`.
+///
+/// Each argument is a scalar or `(nv,)`. `torque` [Nm; N for sliding joints], default 0.05: white noise, per sample.
+/// `velocity` [rad/s, m/s], default 0: white noise of the velocity, which acts through the gain of an observer and the mass
+/// matrix; what is given an external torque leaves it out. `relative`, default 0.03: share of the contact's own torque; a
+/// tenth of it also of the largest one. `model` [Nm, N], default 0.1: slow errors left over (bias, friction, masses).
+/// Raises `InputError` that names the argument.
+#[pyclass(frozen, eq, skip_from_py_object, name = "NoiseModel", module = "contactsense._core")]
+#[derive(PartialEq, Clone)]
+pub struct PyNoiseModel(pub NoiseModel);
+
+/// A number where one holds for all.
+fn shown<'py>(py: Python<'py>, values: &[f64]) -> PyResult<Bound<'py, PyAny>> {
+    match values {
+        [value] => Ok(value.into_pyobject(py)?.into_any()),
+        _ => Ok(PyArray1::from_slice(py, values).into_any()),
+    }
+}
+
+#[pymethods]
+impl PyNoiseModel {
+    #[new]
+    #[pyo3(signature = (*, torque=None, velocity=None, relative=None, model=None),
+           text_signature = "(*, torque=0.05, velocity=0.0, relative=0.03, model=0.1)")]
+    fn new(
+        py: Python<'_>,
+        torque: Option<&Bound<'_, PyAny>>,
+        velocity: Option<&Bound<'_, PyAny>>,
+        relative: Option<&Bound<'_, PyAny>>,
+        model: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let mut noise = NoiseModel::default();
+        for (name, object, values) in [
+            ("torque", torque, &mut noise.torque),
+            ("velocity", velocity, &mut noise.velocity),
+            ("relative", relative, &mut noise.relative),
+            ("model", model, &mut noise.model),
+        ] {
+            if let Some(object) = object {
+                *values = scalar_or_vector(name, object)?;
+            }
+        }
+        noise.check().map_err(|error| to_python(py, error))?;
+        Ok(Self(noise))
+    }
+
+    /// White noise of the torque [Nm; N for sliding joints]: a number, or `(nv,)`, a copy.
+    #[getter]
+    fn torque<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        shown(py, &self.0.torque)
+    }
+
+    /// White noise of the velocity [rad/s, m/s]: a number, or `(nv,)`, a copy.
+    #[getter]
+    fn velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        shown(py, &self.0.velocity)
+    }
+
+    /// Share of the contact's own torque: a number, or `(nv,)`, a copy.
+    #[getter]
+    fn relative<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        shown(py, &self.0.relative)
+    }
+
+    /// Slow errors left over [Nm; N for sliding joints]: a number, or `(nv,)`, a copy.
+    #[getter]
+    fn model<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        shown(py, &self.0.model)
+    }
+
+    fn __repr__(&self) -> String {
+        let shown = |values: &[f64]| match values {
+            [value] => format!("{value:?}"),
+            _ => format!("{values:?}"),
+        };
+        let NoiseModel { torque, velocity, relative, model } = &self.0;
+        let [torque, velocity, relative, model] = [torque, velocity, relative, model].map(|x| shown(x));
+        format!("NoiseModel(torque={torque}, velocity={velocity}, relative={relative}, model={model})")
+    }
+}
+
+/// The argument `noise`.
+pub fn noise_model(object: &Bound<'_, PyAny>) -> PyResult<NoiseModel> {
+    match object.cast::<PyNoiseModel>() {
+        Ok(noise) => Ok(noise.get().0.clone()),
+        Err(_) => Err(input(
+            object.py(),
+            format!("noise: expected a NoiseModel, got {}", object.get_type().name()?),
+        )),
+    }
+}
