@@ -8,6 +8,7 @@ use std::hint::black_box;
 use contactsense::isolation::IsolatorOptions;
 use contactsense::monitor::{ContactMonitor, MonitorOptions};
 use contactsense::observer::MomentumObserver;
+use contactsense::Sample;
 use criterion::{criterion_group, criterion_main, Criterion};
 
 fn step(c: &mut Criterion) {
@@ -18,11 +19,11 @@ fn step(c: &mut Criterion) {
         let tau = common::numbers(robot.nv(), 1.1);
         let mut observer = MomentumObserver::new(robot, 1e-3, &[50.0]).expect("valid settings");
         group.bench_function(name, |b| {
-            b.iter(|| black_box(observer.update(&q, &v, &tau, None, None).expect("valid input"))[0])
+            b.iter(|| black_box(observer.update(&Sample::new(&q, &v, &tau)).expect("valid input"))[0])
         });
         group.bench_function(format!("{name}, with acceleration"), |b| {
             b.iter(|| {
-                observer.update(&q, &v, &tau, None, None).expect("valid input");
+                observer.update(&Sample::new(&q, &v, &tau)).expect("valid input");
                 black_box(observer.acceleration())[0]
             })
         });
@@ -46,7 +47,8 @@ fn tick(c: &mut Criterion) {
         };
         let mut monitor = ContactMonitor::new(robot, &options).expect("valid settings");
         group.bench_function(name, |b| {
-            b.iter(|| monitor.update(black_box(&q), &rest, &tau, None, None, None).expect("valid input"))
+            let sample = Sample::new(&q, &rest, &tau);
+            b.iter(|| monitor.update(black_box(&sample)).expect("valid input").collision)
         });
         assert!(!monitor.report().collision);
     }

@@ -6,12 +6,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Mutex;
 
 use contactsense::isolation::{ContactIsolator, IsolatorOptions};
-use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
+use contactsense::monitor::{ContactMonitor, MonitorOptions};
 use contactsense::observer::MomentumObserver;
 use contactsense::particle::{ContactParticleFilter, FilterOptions};
 use contactsense::robot::Robot;
 use contactsense::sensor::{Convention, ForceTorqueSensor, LoadCompensator};
 use contactsense::spatial::Pose;
+use contactsense::Sample;
 use nalgebra::Vector3;
 
 mod common;
@@ -98,10 +99,11 @@ fn a_tick_allocates_nothing() {
         let mut observer = MomentumObserver::new(robot.clone(), 1e-3, &[100.0]).expect("valid options");
         let work = || {
             for _ in 0..50 {
-                black_box(observer.update(&q, &v, &tau, Some(&tau), None).expect("valid input"));
+                let sample = Sample::new(&q, &v, &tau).friction(&tau);
+                black_box(observer.update(&sample).expect("valid input"));
                 black_box(observer.acceleration());
             }
-            assert!(observer.update(&q[1..], &v, &tau, None, None).is_err());
+            assert!(observer.update(&Sample::new(&q[1..], &v, &tau)).is_err());
         };
         // The message of an error may allocate; that is no tick of the control loop.
         let made = allocations(work);
@@ -142,21 +144,21 @@ fn a_tick_allocates_nothing() {
         };
         let mut monitor = ContactMonitor::new(robot.clone(), &options).expect("valid options");
         let weight = robot.inverse_dynamics(&q, &still, &still).expect("valid input");
-        let mut report = ContactReport::default();
         let mut seen = 0;
         let mut ticks = 0;
         let mut tick = |monitor: &mut ContactMonitor, torque: Option<&Vec<f64>>| {
             ticks += 1;
             // Now and then the step is measured.
-            let dt = (ticks % 3 == 0).then_some(1.5e-3);
+            let timed = ticks % 3 == 0;
             let mut tau = weight.clone();
             if let Some(torque) = torque {
                 tau.iter_mut().zip(torque).for_each(|(tau, ext)| *tau -= ext);
             }
             let before = ALLOCATIONS.load(Ordering::Relaxed);
-            monitor.update(&q, &still, &tau, None, None, dt).expect("valid input");
+            let sample = Sample::new(&q, &still, &tau);
+            let sample = if timed { sample.dt(1.5e-3) } else { sample };
+            let report = monitor.update(&sample).expect("valid input");
             let after = ALLOCATIONS.load(Ordering::Relaxed);
-            monitor.report_into(&mut report);
             seen += usize::from(!report.isolation.contacts.is_empty());
             after - before
         };
@@ -188,18 +190,19 @@ fn a_tick_allocates_nothing() {
         let options =
             MonitorOptions { isolation, bias_time_constant: Some(0.02), ..MonitorOptions::new(1e-3) };
         let mut monitor = ContactMonitor::new(robot.clone(), &options).expect("valid options");
-        monitor.update(&q, &v, &tau, None, Some(&readings), None).expect("valid input");
-        monitor.report_into(&mut report);
+        let sample = Sample::new(&q, &v, &tau);
+        monitor.update(&sample.wrenches(&readings)).expect("valid input");
         let work = || {
             for k in 0..40 {
                 let row = if k % 10 == 9 { &silent } else { &readings };
                 // Nominal, another and far too long for a step.
-                let dt = [None, Some(2e-3), Some(1.0)][k % 3];
-                monitor.update(&q, &v, &tau, None, Some(row), dt).expect("valid input");
+                let sample = sample.wrenches(row);
+                let sample = [sample, sample.dt(2e-3), sample.dt(1.0)][k % 3];
+                black_box(monitor.update(&sample).expect("valid input"));
             }
         };
         assert_eq!(allocations(work), 0, "monitor of {} with sensors", robot.name());
-        monitor.report_into(&mut report);
+        let report = monitor.report();
         assert_eq!((report.sensors_left_out.len(), report.wrenches.len()), (1, readings.len()));
     }
 }

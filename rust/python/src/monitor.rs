@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
 use contactsense::robot::Robot;
+use contactsense::Sample;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -23,6 +24,7 @@ pub struct PyContactReport {
     robot: Arc<Robot>,
     sensors: Arc<[String]>,
     report: ContactReport,
+    acceleration: Vec<f64>,
 }
 
 #[pymethods]
@@ -95,7 +97,7 @@ impl PyContactReport {
     /// Estimated acceleration, `(nv,)`.
     #[getter]
     fn acceleration<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.report.acceleration)
+        PyArray1::from_slice(py, &self.acceleration)
     }
 
     /// The contacts; empty while there is no collision.
@@ -249,13 +251,21 @@ impl PyContactMonitor {
                 return Err(error);
             }
         };
-        let friction = friction.as_ref().map(|friction| friction.slice());
-        let wrenches = wrenches.as_ref().map(|wrenches| wrenches.rows());
+        let mut sample = Sample::new(q.slice(), v.slice(), tau.slice());
+        if let Some(friction) = &friction {
+            sample = sample.friction(friction.slice());
+        }
+        if let Some(wrenches) = &wrenches {
+            sample = sample.wrenches(wrenches.rows());
+        }
+        if let Some(dt) = dt {
+            sample = sample.dt(dt);
+        }
         let mut monitor = self.sole(py)?;
-        let done = monitor.update(q.slice(), v.slice(), tau.slice(), friction, wrenches, dt);
-        done.map_err(|error| to_python(py, error))?;
-        let report = monitor.report();
-        Ok(PyContactReport { robot: monitor.robot().clone(), sensors: self.sensors.clone(), report })
+        let report = monitor.update(&sample).map_err(|error| to_python(py, error))?.clone();
+        let acceleration = monitor.acceleration().to_vec();
+        let (robot, sensors) = (monitor.robot().clone(), self.sensors.clone());
+        Ok(PyContactReport { robot, sensors, report, acceleration })
     }
 
     /// The robot that is monitored.

@@ -3,6 +3,7 @@
 use std::sync::{Mutex, MutexGuard};
 
 use contactsense::observer::MomentumObserver;
+use contactsense::Sample;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -67,10 +68,16 @@ impl PyMomentumObserver {
         let py = q.py();
         let (q, v, tau) = (Vector::new("q", q)?, Vector::new("v", v)?, Vector::new("tau", tau)?);
         let friction = Vector::optional("friction", friction)?;
-        let friction = friction.as_ref().map(|friction| friction.slice());
         let dt = dt.map(|dt| dt.named("dt")).transpose()?;
         let mut observer = self.sole(py)?;
-        match observer.update(q.slice(), v.slice(), tau.slice(), friction, dt) {
+        let mut sample = Sample::new(q.slice(), v.slice(), tau.slice());
+        if let Some(friction) = &friction {
+            sample = sample.friction(friction.slice());
+        }
+        if let Some(dt) = dt {
+            sample = sample.dt(dt);
+        }
+        match observer.update(&sample) {
             Ok(torque) => Ok(PyArray1::from_slice(py, torque)),
             Err(error) => Err(to_python(py, error)),
         }

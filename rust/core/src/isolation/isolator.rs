@@ -9,7 +9,7 @@ use super::found::Scene;
 use super::line::LineCast;
 use super::options::IsolatorOptions;
 use super::region::{Region, Regions};
-use super::result::{Candidate, Isolation};
+use super::result::{Candidate, Isolation, CANDIDATES};
 use super::rows::{Root, TorqueRows, WrenchRows};
 use super::several::SeveralContacts;
 use super::tips::TipSearch;
@@ -21,8 +21,6 @@ use crate::robot::{Kinematics, LinkIndex, Robot};
 use crate::sensor::SensorTree;
 use crate::torque::TorqueNoise;
 
-/// All hits of one instant that are kept.
-const CANDIDATES: usize = 512;
 /// A located contact explains the torques but for this (root mean square, in thresholds): more is no noise, but a
 /// moment, a second contact or a wrong model.
 pub(super) const CONTRADICTION: f64 = 1.0;
@@ -109,12 +107,6 @@ impl ContactIsolator {
         let (nv, links) = (robot.nv(), robot.links().len());
         // More than a contact a link cannot be told apart.
         let max_contacts = options.max_contacts.min(links.max(1));
-        let isolation = Isolation {
-            contacts: Vec::with_capacity(max_contacts),
-            candidates: Vec::with_capacity(CANDIDATES),
-            link_candidates: Vec::with_capacity(links + max_contacts),
-            ..Isolation::default()
-        };
         Ok(Self {
             wrench_threshold,
             max_contacts,
@@ -139,7 +131,7 @@ impl ContactIsolator {
             excluded: vec![false; robot.body_count()],
             displaced: Vec::with_capacity(CANDIDATES),
             unexplained: vec![0.0; nv],
-            isolation,
+            isolation: Isolation::with_room(max_contacts, links),
             robot,
         })
     }
@@ -217,9 +209,14 @@ impl ContactIsolator {
         &self.isolation
     }
 
-    /// Forgets the last answer.
-    pub fn clear(&mut self) {
-        self.isolation.clear();
+    /// Hands the answer of the last call over, and takes memory for the next.
+    pub(crate) fn exchange(&mut self, isolation: &mut Isolation) {
+        std::mem::swap(&mut self.isolation, isolation);
+    }
+
+    /// An empty answer with room for any.
+    pub(crate) fn empty_answer(&self) -> Isolation {
+        Isolation::with_room(self.max_contacts, self.robot.links().len())
     }
 
     /// Names of the sensors, in their order.

@@ -8,6 +8,9 @@ use crate::robot::LinkIndex;
 use crate::sensor::SensorIndex;
 use crate::spatial::vector::split;
 
+/// All hits of one instant that are kept.
+pub(super) const CANDIDATES: usize = 512;
+
 /// A place where the line of action meets a surface.
 ///
 /// ```
@@ -169,7 +172,17 @@ pub struct Isolation {
 }
 
 impl Isolation {
-    pub(super) fn clear(&mut self) {
+    /// An empty one with room for so many contacts on a robot of so many links.
+    pub(crate) fn with_room(contacts: usize, links: usize) -> Self {
+        Self {
+            contacts: Vec::with_capacity(contacts),
+            candidates: Vec::with_capacity(CANDIDATES),
+            link_candidates: Vec::with_capacity(links + contacts),
+            ..Self::default()
+        }
+    }
+
+    pub(crate) fn clear(&mut self) {
         self.contacts.clear();
         self.candidates.clear();
         self.link_candidates.clear();

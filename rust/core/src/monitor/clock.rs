@@ -1,6 +1,7 @@
 //! The time between two samples, of which some never come or are refused.
 
-use crate::observer::{check_time_step, Step, LONGEST_STEP};
+use crate::observer::Step;
+use crate::sample::{check_time_step, LONGEST_STEP};
 
 /// A step is bridged, torques and momentum taken as changing evenly over it, up to so many nominal steps, or
 /// [`BRIDGE_TIME`] if that is longer.

@@ -10,8 +10,9 @@ use super::sensing::Sensing;
 use crate::detection::{Detector, ReleaseDetector};
 use crate::error::{Error, Result};
 use crate::isolation::ContactIsolator;
-use crate::observer::{check_time_step, MomentumObserver, Step};
+use crate::observer::MomentumObserver;
 use crate::robot::Robot;
+use crate::sample::Sample;
 use crate::sensor::{SensorIndex, SensorTree};
 
 /// The sense of touch of one robot, called once a control tick.
@@ -21,19 +22,20 @@ use crate::sensor::{SensorIndex, SensorTree};
 ///
 /// use contactsense::monitor::{ContactMonitor, MonitorOptions};
 /// use contactsense::robot::Robot;
+/// use contactsense::Sample;
 ///
 /// let robot = Arc::new(Robot::example_arm());
 /// let (q, v) = (vec![0.4; 7], vec![0.0; 7]);
 /// let weight = robot.inverse_dynamics(&q, &v, &v)?;
 /// let mut monitor = ContactMonitor::new(robot, &MonitorOptions::new(1e-3))?;
 /// for _ in 0..100 {
-///     monitor.update(&q, &v, &weight, None, None, None)?;
+///     let report = monitor.update(&Sample::new(&q, &v, &weight))?;
+///     assert!(!report.collision);
 /// }
-/// assert!(!monitor.report().collision);
 ///
 /// let pushed: Vec<f64> = weight.iter().map(|tau| tau - 3.0).collect();
 /// for _ in 0..100 {
-///     monitor.update(&q, &v, &pushed, None, None, None)?;
+///     monitor.update(&Sample::new(&q, &v, &pushed))?;
 /// }
 /// assert!(monitor.report().collision);
 /// # Ok::<(), contactsense::Error>(())
@@ -48,9 +50,7 @@ pub struct ContactMonitor {
     detector: Detector,
     isolator: ContactIsolator,
     sensing: Option<Sensing>,
-    remainder_learned: bool,
-    external_torque: Vec<f64>,
-    collision_torque: Vec<f64>,
+    report: ContactReport,
 }
 
 impl ContactMonitor {
@@ -89,65 +89,70 @@ impl ContactMonitor {
         let greatest_bias = options.greatest_bias(detector.threshold())?;
         let release = ReleaseDetector::new(options.release_rule(&robot, detector.threshold())?);
         let tracker = |constant| BiasTracker::new(constant, greatest_bias);
-        Ok(Self {
+        let isolator = ContactIsolator::new(robot.clone(), &options.isolation)?;
+        let sensors = options.isolation.sensors.len();
+        let mut monitor = Self {
             clock: SampleClock::new(options.dt),
             observer,
             detector,
             release,
             sensing: (!options.isolation.sensors.is_empty()).then_some(sensing),
             bias: options.bias_time_constant.map(tracker).transpose()?,
-            isolator: ContactIsolator::new(robot.clone(), &options.isolation)?,
-            remainder_learned: false,
-            external_torque: vec![0.0; nv],
-            collision_torque: vec![0.0; nv],
+            report: ContactReport {
+                links: Vec::with_capacity(robot.touchable_links().len()),
+                external_torque: vec![0.0; nv],
+                collision_torque: vec![0.0; nv],
+                wrenches: Vec::with_capacity(sensors),
+                sensors_left_out: Vec::with_capacity(sensors),
+                joints_left_out: Vec::with_capacity(robot.joint_names().len()),
+                isolation: isolator.empty_answer(),
+                ..ContactReport::default()
+            },
+            isolator,
             robot,
-        })
+        };
+        monitor.finish_report();
+        Ok(monitor)
     }
 
-    /// One control tick. `tau` and `friction` are `(nv,)`, or `(nv - 6,)` for a floating base; `wrenches` the sensors'
-    /// readings, where one has one. Without sensors there are none.
+    /// One control tick; returns what it says. With sensors, the sample has their readings.
     ///
-    /// `dt` (s) is the time since the last sample that was accepted, where it is measured. Without it, that is the options'
+    /// The sample's `dt` is the time since the last that was accepted, where it is measured. Without it, that is the options'
     /// `dt`, and as much again for every sample refused in between. Over more than 50 ms, or five times the options' `dt`
     /// if that is longer, nothing is known of the mean torque: the external torque is then kept as it was.
     ///
     /// # Errors
     /// [`crate::Error::Input`] names the argument; the state is then unchanged but for the time that passed.
-    pub fn update(
-        &mut self,
-        q: &[f64],
-        v: &[f64],
-        tau: &[f64],
-        friction: Option<&[f64]>,
-        wrenches: Option<&[Option<[f64; 6]>]>,
-        dt: Option<f64>,
-    ) -> Result<()> {
+    pub fn update(&mut self, sample: &Sample<'_>) -> Result<&ContactReport> {
+        if let Err(error) = self.check(sample) {
+            self.miss(sample.dt);
+            return Err(error);
+        }
         let first = !self.clock.started();
-        let step = match self.observe(q, v, tau, friction, wrenches, dt) {
-            Ok(step) => step,
-            Err(error) => {
-                self.miss(dt);
-                return Err(error);
-            }
-        };
+        let step = self.clock.step(sample.dt);
         let length = step.length(self.clock.dt());
-        self.collision_torque.copy_from_slice(&self.external_torque);
-        if let (Some(sensing), Some(readings)) = (&mut self.sensing, wrenches) {
-            sensing.update(&self.observer, readings, self.detector.threshold(), step, self.clock.dt());
-            let wanted = sensing.wanted_torque();
-            self.collision_torque.iter_mut().zip(wanted).for_each(|(torque, wanted)| *torque -= wanted);
+        let external_torque = self.observer.advance(sample, step);
+        self.clock.accept(sample.dt);
+        self.report.external_torque.copy_from_slice(external_torque);
+        self.report.collision_torque.copy_from_slice(external_torque);
+        if let Some(sensing) = &mut self.sensing {
+            let (threshold, dt) = (self.detector.threshold(), self.clock.dt());
+            sensing.update(&self.observer, sample.wrenches, threshold, step, dt);
+            let collision_torque = self.report.collision_torque.iter_mut();
+            collision_torque.zip(sensing.wanted_torque()).for_each(|(torque, wanted)| *torque -= wanted);
         }
         let ready = self.remove_bias(length, !first && !step.is_gap());
         if ready {
             let unwanted = self.sensing.as_ref().map_or(&[][..], Sensing::unwanted);
-            self.detector.update(&self.collision_torque, unwanted, length);
+            self.detector.update(&self.report.collision_torque, unwanted, length);
         }
         if self.detector.collision() {
             self.isolate();
         } else {
-            self.isolator.clear();
+            self.report.isolation.clear();
         }
-        Ok(())
+        self.finish_report();
+        Ok(&self.report)
     }
 
     /// A tick whose sample never came to [`ContactMonitor::update`], `dt` (s) after the last that was accepted if that is
@@ -156,56 +161,38 @@ impl ContactMonitor {
         self.clock.miss(dt);
     }
 
-    /// Checks the arguments, and takes the sample in.
-    fn observe(
-        &mut self,
-        q: &[f64],
-        v: &[f64],
-        tau: &[f64],
-        friction: Option<&[f64]>,
-        wrenches: Option<&[Option<[f64; 6]>]>,
-        dt: Option<f64>,
-    ) -> Result<Step> {
-        self.check_wrenches(wrenches)?;
-        if let Some(dt) = dt {
-            check_time_step(dt)?;
-        }
-        let step = self.clock.step(dt);
-        self.external_torque.copy_from_slice(self.observer.advance(q, v, tau, friction, step)?);
-        self.clock.accept(dt);
-        Ok(step)
-    }
-
     /// The contacts behind the torque and the wrenches.
     fn isolate(&mut self) {
-        let kinematics = self.observer.kinematics();
+        let (kinematics, torque) = (self.observer.kinematics(), &self.report.external_torque);
         match &self.sensing {
             Some(sensing) => {
                 let (wrenches, lag) = (sensing.trusted(), Some(sensing.wrenches()));
-                self.isolator.isolate_at(kinematics, &self.external_torque, wrenches, lag);
+                self.isolator.isolate_at(kinematics, torque, wrenches, lag);
             }
             None => {
-                self.isolator.isolate_at(kinematics, &self.external_torque, &[], None);
+                self.isolator.isolate_at(kinematics, torque, &[], None);
             }
         }
+        self.isolator.exchange(&mut self.report.isolation);
     }
 
-    fn check_wrenches(&self, wrenches: Option<&[Option<[f64; 6]>]>) -> Result<()> {
-        match (&self.sensing, wrenches) {
-            (Some(sensing), Some(wrenches)) => sensing.check_readings(wrenches),
-            (Some(sensing), None) => sensing.check_readings(&[]),
-            (None, Some(rows)) if !rows.is_empty() => {
-                Err(Error::input("wrenches", "the monitor was made without sensors"))
+    fn check(&self, sample: &Sample<'_>) -> Result<()> {
+        match &self.sensing {
+            Some(sensing) => sensing.check_readings(sample.wrenches)?,
+            None if !sample.wrenches.is_empty() => {
+                return Err(Error::input("wrenches", "the monitor was made without sensors"));
             }
-            (None, _) => Ok(()),
+            None => {}
         }
+        sample.check(&self.robot)
     }
 
     /// Subtracts the bias, which follows the collision torque while nothing touches, over a step of `length` (s). `new`
     /// is false where the step brought no new torque: the first, and one over a gap. False during the bias's first estimate.
     fn remove_bias(&mut self, length: f64, new: bool) -> bool {
-        let Self { bias, sensing, detector, release, collision_torque, external_torque, .. } = self;
-        self.remainder_learned = false;
+        let Self { bias, sensing, detector, release, report, .. } = self;
+        let ContactReport { collision_torque, external_torque, remainder_learned, .. } = report;
+        *remainder_learned = false;
         let Some(bias) = bias else {
             leave_out(sensing, collision_torque, None);
             return true;
@@ -226,7 +213,7 @@ impl ContactMonitor {
                 bias.set(release.remainder());
                 release.reset();
                 detector.reset();
-                self.remainder_learned = true;
+                *remainder_learned = true;
             }
         } else {
             release.reset();
@@ -240,23 +227,24 @@ impl ContactMonitor {
         ready
     }
 
-    /// The last tick's report.
-    pub fn report(&mut self) -> ContactReport {
-        let mut report = ContactReport::default();
-        self.report_into(&mut report);
-        report
+    /// What the last tick said.
+    pub fn report(&self) -> &ContactReport {
+        &self.report
     }
 
-    /// Writes the last tick's report into `report`, whose buffers are reused.
-    pub fn report_into(&mut self, report: &mut ContactReport) {
-        report.time = self.time();
+    /// The estimated acceleration `(nv,)` at the last tick, as [`MomentumObserver::acceleration`] gives it.
+    pub fn acceleration(&mut self) -> &[f64] {
+        self.observer.acceleration()
+    }
+
+    /// Writes what the report has from the detector and the sensors.
+    fn finish_report(&mut self) {
+        let report = &mut self.report;
+        report.time = self.clock.time();
         report.collision = self.detector.collision();
         report.onset = self.detector.onset();
-        report.remainder_learned = self.remainder_learned;
         report.links.clear();
         report.links.extend_from_slice(self.detector.links());
-        report.external_torque.clone_from(&self.external_torque);
-        report.collision_torque.clone_from(&self.collision_torque);
         report.wrenches.clear();
         report.sensors_left_out.clear();
         report.joints_left_out.clear();
@@ -267,27 +255,25 @@ impl ContactMonitor {
             let is_blind = |body: &usize| sensing.blind()[self.robot.velocity_range(*body)].contains(&true);
             report.joints_left_out.extend((1..self.robot.body_count()).filter(is_blind).map(|body| body - 1));
         }
-        report.acceleration.clear();
-        report.acceleration.extend_from_slice(self.observer.acceleration());
-        report.isolation.clone_from(self.isolator.isolation());
     }
 
     /// Forgets all ticks, the bias too.
     pub fn reset(&mut self) {
         self.observer.reset();
         self.detector.reset();
-        self.isolator.clear();
-        self.external_torque.fill(0.0);
-        self.collision_torque.fill(0.0);
+        self.report.isolation.clear();
+        self.report.external_torque.fill(0.0);
+        self.report.collision_torque.fill(0.0);
         if let Some(sensing) = &mut self.sensing {
             sensing.reset();
         }
         self.clock.reset();
-        self.remainder_learned = false;
+        self.report.remainder_learned = false;
         self.release.reset();
         if let Some(bias) = &mut self.bias {
             bias.reset();
         }
+        self.finish_report();
     }
 
     /// Since the first accepted call (s).

@@ -11,18 +11,17 @@ use crate::sensor::SensorIndex;
 /// ```
 /// use std::sync::Arc;
 ///
-/// use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
+/// use contactsense::monitor::{ContactMonitor, MonitorOptions};
 /// use contactsense::robot::Robot;
+/// use contactsense::Sample;
 ///
 /// let mut monitor = ContactMonitor::new(Arc::new(Robot::example_arm()), &MonitorOptions::new(1e-3))?;
-/// let mut report = ContactReport::default();
-/// for _ in 0..3 {
-///     monitor.update(&[0.0; 7], &[0.0; 7], &[0.0; 7], None, None, None)?;
-///     // The buffers of the report are used again.
-///     monitor.report_into(&mut report);
+/// let upright = [0.0; 7];
+/// for tick in 0..3 {
+///     let report = monitor.update(&Sample::new(&upright, &upright, &upright))?;
+///     assert!(!report.collision && report.isolation.contacts.is_empty());
+///     assert_eq!(report.time, 1e-3 * f64::from(tick));
 /// }
-/// assert!(!report.collision && report.isolation.contacts.is_empty());
-/// assert_eq!((report.time, report.external_torque.len()), (0.002, 7));
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -50,8 +49,6 @@ pub struct ContactReport {
     /// Indices of the joints whose torques a wanted contact loads unmeasured: behind its sensor, and on the way there
     /// from the base while the sensor gives no reading, and until the observer has forgotten that gap.
     pub joints_left_out: Vec<usize>,
-    /// Estimated acceleration `(nv,)`.
-    pub acceleration: Vec<f64>,
     /// The contacts.
     pub isolation: Isolation,
 }

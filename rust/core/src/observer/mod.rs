@@ -5,5 +5,5 @@ mod step;
 mod wrench_observer;
 
 pub use momentum_observer::MomentumObserver;
-pub(crate) use step::{check_time_step, Step, LONGEST_STEP};
+pub(crate) use step::Step;
 pub(crate) use wrench_observer::WrenchObserver;

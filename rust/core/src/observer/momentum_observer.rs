@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use super::step::{check_time_step, Step};
+use super::step::Step;
 use crate::error::{Error, Result};
 use crate::robot::configuration::spread_torque;
 use crate::robot::{ForwardDynamics, Kinematics, MomentumPass, Robot};
+use crate::sample::{check_time_step, Sample};
 
 /// Estimates the external torque from `q`, `v` and the motors' torque, without acceleration.
 ///
@@ -17,6 +18,7 @@ use crate::robot::{ForwardDynamics, Kinematics, MomentumPass, Robot};
 ///
 /// use contactsense::observer::MomentumObserver;
 /// use contactsense::robot::Robot;
+/// use contactsense::Sample;
 ///
 /// let robot = Arc::new(Robot::example_arm());
 /// let (q, v) = (vec![0.4; 7], vec![0.0; 7]);
@@ -25,7 +27,7 @@ use crate::robot::{ForwardDynamics, Kinematics, MomentumPass, Robot};
 /// tau[1] -= 2.0;
 /// let mut observer = MomentumObserver::new(robot, 1e-3, &[50.0])?;
 /// for _ in 0..500 {
-///     observer.update(&q, &v, &tau, None, None)?;
+///     observer.update(&Sample::new(&q, &v, &tau))?;
 /// }
 /// assert!((observer.external_torque()[1] - 2.0).abs() < 1e-6);
 /// # Ok::<(), contactsense::Error>(())
@@ -92,40 +94,19 @@ impl MomentumObserver {
 
     /// One control tick; returns the external torque `(nv,)`.
     ///
-    /// `tau` is `(nv,)`, or `(nv - 6,)` for a floating base; `friction` (same shape) is subtracted from it; `dt`
-    /// replaces the constructor's for this step. The first call sets the initial momentum and returns zeros.
+    /// The sample's `dt` replaces the constructor's for this step; wrenches are not looked at. The first call sets the
+    /// initial momentum and returns zeros.
     ///
     /// # Errors
     /// [`Error::Input`] names the argument; the state is then unchanged.
-    pub fn update(
-        &mut self,
-        q: &[f64],
-        v: &[f64],
-        tau: &[f64],
-        friction: Option<&[f64]>,
-        dt: Option<f64>,
-    ) -> Result<&[f64]> {
-        if let Some(dt) = dt {
-            check_time_step(dt)?;
-        }
-        self.advance(q, v, tau, friction, dt.map_or(Step::Nominal, Step::Of))
+    pub fn update(&mut self, sample: &Sample<'_>) -> Result<&[f64]> {
+        sample.check(&self.robot)?;
+        Ok(self.advance(sample, sample.dt.map_or(Step::Nominal, Step::Of)))
     }
 
-    /// The same over a checked step; over a gap the estimate is kept, and the next step starts from here.
-    pub(crate) fn advance(
-        &mut self,
-        q: &[f64],
-        v: &[f64],
-        tau: &[f64],
-        friction: Option<&[f64]>,
-        step: Step,
-    ) -> Result<&[f64]> {
-        self.robot.check_configuration(q)?;
-        self.robot.check_tangent("v", v)?;
-        self.robot.check_torque("tau", tau)?;
-        if let Some(friction) = friction {
-            self.robot.check_torque("friction", friction)?;
-        }
+    /// The same of a checked sample; over a gap the estimate is kept, and the next step starts from here.
+    pub(crate) fn advance(&mut self, sample: &Sample<'_>, step: Step) -> &[f64] {
+        let Sample { q, v, tau, friction, .. } = *sample;
         std::mem::swap(&mut self.momentum, &mut self.momentum_before);
         std::mem::swap(&mut self.known_rate, &mut self.known_rate_before);
         self.kinematics.set_configuration(&self.robot, q);
@@ -143,7 +124,7 @@ impl MomentumObserver {
         }
         self.started = true;
         self.acceleration_is_current = false;
-        Ok(&self.external_torque)
+        &self.external_torque
     }
 
     /// `r' = gain (dp/dt - known rate - r)`, exactly over a step on which `dp/dt - known rate` is constant.

@@ -2,11 +2,11 @@
 
 use crate::common;
 use contactsense::isolation::{ContactIsolator, ContactPlace, IsolatorOptions};
-use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
+use contactsense::monitor::{ContactMonitor, MonitorOptions};
 use contactsense::observer::MomentumObserver;
 use contactsense::sensor::{Convention, ForceTorqueSensor, SensorIndex};
 use contactsense::spatial::Pose;
-use contactsense::Error;
+use contactsense::{Error, Sample};
 use proptest::prelude::*;
 
 /// Numbers of any size, now and then no number.
@@ -54,10 +54,11 @@ proptest! {
         let q = common::configuration(&robot, 0.2);
         let mut observer = MomentumObserver::new(robot.clone(), 1e-3, &[100.0]).unwrap();
         let calm = vec![0.1; 7];
-        observer.update(&q, &calm, &calm, None, None).unwrap();
-        let before = observer.update(&q, &calm, &calm, None, None).unwrap().to_vec();
+        let at_rest = Sample::new(&q, &calm, &calm);
+        observer.update(&at_rest).unwrap();
+        let before = observer.update(&at_rest).unwrap().to_vec();
         let good = sensible(&v, 7) && sensible(&tau, 7) && (1e-9..=1e9).contains(&dt);
-        let outcome = observer.update(&q, &v, &tau, None, Some(dt)).map(<[f64]>::to_vec);
+        let outcome = observer.update(&Sample::new(&q, &v, &tau).dt(dt)).map(<[f64]>::to_vec);
         match outcome {
             Ok(torque) => {
                 prop_assert!(good);
@@ -97,17 +98,14 @@ proptest! {
         let robot = common::arm();
         let q = common::configuration(&robot, 0.2);
         let mut monitor = ContactMonitor::new(robot.clone(), &options()).unwrap();
-        let mut report = ContactReport::default();
         for (v, tau) in ticks {
-            monitor.report_into(&mut report);
-            let before = report.clone();
+            let before = monitor.report().clone();
             let good = sensible(&v, 7) && sensible(&tau, 7);
-            match monitor.update(&q, &v, &tau, None, None, None) {
-                Ok(()) => prop_assert!(good),
+            match monitor.update(&Sample::new(&q, &v, &tau)) {
+                Ok(_) => prop_assert!(good),
                 Err(error) => {
                     prop_assert!(!good && matches!(error, Error::Input { .. }), "{error}");
-                    monitor.report_into(&mut report);
-                    prop_assert_eq!(&report, &before);
+                    prop_assert_eq!(monitor.report(), &before);
                 }
             }
         }
@@ -129,12 +127,10 @@ proptest! {
         options.isolation.sensors = vec![sensor("arm_2"), sensor("arm_5")];
         options.isolation.wanted_contacts = vec!["arm_5".into()];
         let mut monitor = ContactMonitor::new(robot.clone(), &options).unwrap();
-        let mut report = ContactReport::default();
         let (mut silent_before, mut ever_silent, mut left_before) = ([false; 2], [false; 2], [false; 2]);
         let mut refused = false;
         for (v, tau, readings, dt) in ticks {
-            monitor.report_into(&mut report);
-            let before = report.clone();
+            let before = monitor.report().clone();
             let has_reading = |row: &[f64; 6]| !row.iter().any(|x| x.is_nan());
             let rows: Vec<Option<[f64; 6]>> =
                 readings.as_chunks::<6>().0.iter().map(|row| Some(*row).filter(has_reading)).collect();
@@ -144,10 +140,10 @@ proptest! {
                 && sensible(&tau, 7)
                 && rows.len() == 2
                 && rows.iter().flatten().flatten().all(|x| x.abs() < 1e60);
-            match monitor.update(&q, &v, &tau, None, Some(&rows), dt) {
-                Ok(()) => {
+            let sample = Sample::new(&q, &v, &tau).wrenches(&rows);
+            match monitor.update(&dt.map_or(sample, |dt| sample.dt(dt))) {
+                Ok(report) => {
                     prop_assert!(good);
-                    monitor.report_into(&mut report);
                     // A sensor that comes back is left out for one more tick, and over a gap until the next; the wanted one,
                     // for as long as the observer still knows too little of it.
                     let gap = refused || dt.is_some_and(|dt| dt > 0.05);
@@ -168,8 +164,7 @@ proptest! {
                 Err(error) => {
                     refused = true;
                     prop_assert!(!good && matches!(error, Error::Input { .. }), "{error}");
-                    monitor.report_into(&mut report);
-                    prop_assert_eq!(&report, &before);
+                    prop_assert_eq!(monitor.report(), &before);
                 }
             }
         }

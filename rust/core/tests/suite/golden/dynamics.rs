@@ -1,6 +1,7 @@
 //! Dynamics, Jacobians and the momentum observer.
 
 use contactsense::observer::MomentumObserver;
+use contactsense::Sample;
 
 use super::data::{read, robot, Dynamics, Motion};
 
@@ -45,7 +46,7 @@ fn the_observer_follows_an_external_torque() {
         MomentumObserver::new(robot("iiwa14"), motion.dt, &[motion.gain]).expect("valid options");
     let greatest = motion.push.iter().fold(0.0_f64, |greatest, push| greatest.max(push.abs()));
     for (k, tick) in motion.ticks.iter().enumerate() {
-        let torque = observer.update(&tick.q, &tick.v, &tick.tau, None, None).expect("valid input");
+        let torque = observer.update(&Sample::new(&tick.q, &tick.v, &tick.tau)).expect("valid input");
         for (ours, theirs) in torque.iter().zip(&tick.filtered) {
             assert!((ours - theirs).abs() < SHARE * greatest, "tick {k}: {torque:?}, {:?}", tick.filtered);
         }
