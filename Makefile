@@ -27,6 +27,7 @@ types: install
 rust-test: export PROPTEST_RNG_SEED ?= 1
 rust-test: toolchain
 	cargo test --workspace --release --quiet
+	cargo test -p contactsense --quiet --features serde --test suite plain_data
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --release --quiet
 
 python-test: install

@@ -1,8 +1,12 @@
 //! contactsense: a robot's sense of touch over its whole body, from joint positions, velocities and torques.
 //!
-//! [`monitor::ContactMonitor`] is the place to start: one call a control tick. [`robot::Robot`] comes from a URDF file
+//! [`monitor::ContactMonitor`] is the place to start: one call a control tick, with a [`Sample`]. [`robot::Robot`] comes from a URDF file
 //! or a description; all vectors are in its joints' order, in SI units, and vectors of the world in its axes.
 #![warn(missing_docs)]
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 mod detection;
 pub mod error;

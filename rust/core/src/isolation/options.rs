@@ -24,7 +24,9 @@ const LOCATE_WITHIN: f64 = 0.05;
 /// assert!(isolator.isolate(&[0.4; 7], &[0.3; 7])?.contacts.is_empty());
 /// # Ok::<(), contactsense::Error>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct IsolatorOptions {
     /// A torque is felt above it: per velocity variable, or one for all (Nm, N). None for three standard deviations of
     /// `noise` at rest.

@@ -34,6 +34,7 @@ pub(super) const CANDIDATES: usize = 512;
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Candidate {
     /// The link.
     pub link: LinkIndex,
@@ -70,6 +71,7 @@ pub struct Candidate {
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactPlace {
     /// Point of contact, world frame (m).
     pub point: Vector3<f64>,
@@ -100,6 +102,7 @@ pub struct ContactPlace {
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Contact {
     /// The link.
     pub link: LinkIndex,
@@ -155,6 +158,7 @@ impl Contact {
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Isolation {
     /// One contact a branch that feels one, farthest from the base first.
     pub contacts: Vec<Contact>,

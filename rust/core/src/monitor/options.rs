@@ -23,7 +23,9 @@ use crate::robot::{JointKind, Robot};
 /// assert!(ContactMonitor::new(Arc::new(Robot::example_arm()), &options).is_err());
 /// # Ok::<(), contactsense::Error>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct MonitorOptions {
     /// Time between two calls (s).
     pub dt: f64,

@@ -25,6 +25,7 @@ use crate::sensor::SensorIndex;
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactReport {
     /// Since the first accepted call (s).
     pub time: f64,

@@ -14,6 +14,8 @@ use crate::surface::Part;
 /// assert_eq!((JointKind::FreeFlyer.nq(), JointKind::FreeFlyer.nv()), (7, 6));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum JointKind {
     /// A floating base: `q` = position, quaternion (x, y, z, w); `v` = linear, angular, both in the base frame.
     FreeFlyer,
@@ -66,6 +68,8 @@ impl JointKind {
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct JointDescription {
     /// Unique name.
     pub name: String,
@@ -104,7 +108,9 @@ pub struct JointDescription {
 /// assert!((pose.translation.z - 2.4).abs() < 1e-12);
 /// # Ok::<(), contactsense::Error>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct LinkDescription {
     /// Unique name.
     pub name: String,
@@ -139,7 +145,9 @@ pub struct LinkDescription {
 /// assert!(Robot::new(description).unwrap_err().to_string().contains("two links are named 'link_1'"));
 /// # Ok::<(), contactsense::Error>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct RobotDescription {
     /// The robot's name.
     pub name: String,

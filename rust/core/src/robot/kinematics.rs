@@ -27,6 +27,7 @@ use crate::spatial::Pose;
 /// assert!(state.velocity_at(&state.position).norm() < 1e-12);
 /// ```
 #[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyState {
     /// Rotation from body to world axes.
     pub rotation: Matrix3<f64>,

@@ -16,6 +16,8 @@ const RIGID_TOLERANCE: f64 = 1e-6;
 /// assert_eq!(Convention::Support.sign() * 3.0, -3.0);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Convention {
     /// What the distal side exerts on the sensor: a free hand at rest reads its weight.
     #[default]
@@ -62,6 +64,8 @@ impl Convention {
 /// assert!(!sensor.has_rigid_pose());
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ForceTorqueSensor {
     /// Unique name.
     pub name: String,

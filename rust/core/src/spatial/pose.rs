@@ -17,6 +17,8 @@ use nalgebra::{Matrix3, Vector3};
 /// assert!((pose.inverse_transform_point(&point) - Vector3::x()).norm() < 1e-12);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Pose {
     /// Rotation from the local to the outer frame.
     pub rotation: Matrix3<f64>,

@@ -35,6 +35,7 @@ pub use sample::Sampling;
 /// assert!((found.distance - 0.2).abs() < 1e-12 && (found.point.x - 0.05).abs() < 1e-12);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClosestPoint {
     /// The nearest point (m).
     pub point: Vector3<f64>,
@@ -61,6 +62,7 @@ pub struct ClosestPoint {
 /// assert!(!hits[1].entering && (hits[1].distance - 1.05).abs() < 1e-12);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RayHit {
     /// Where along the line, from its origin (m); negative behind it.
     pub distance: f64,
@@ -90,6 +92,7 @@ pub struct RayHit {
 /// }
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SurfacePoint {
     /// The sampled point (m).
     pub point: Vector3<f64>,

@@ -20,6 +20,8 @@ use crate::{Error, Result};
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Geometry {
     /// Triangles, counter-clockwise seen from outside (repaired where they are not).
     Mesh {
@@ -70,6 +72,8 @@ pub enum Geometry {
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Part {
     /// The shape.
     pub geometry: Geometry,

@@ -10,4 +10,6 @@ mod golden;
 mod mutated_files;
 mod noise_model;
 mod particle_filter;
+#[cfg(feature = "serde")]
+mod plain_data;
 mod properties;

@@ -35,6 +35,8 @@ use crate::robot::Robot;
 /// assert_ne!(options.geometry, UrdfGeometry::default());
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum UrdfGeometry {
     /// `<collision>` elements.
     #[default]
@@ -67,6 +69,8 @@ impl UrdfGeometry {
 /// assert!(matches!(Robot::from_urdf("no_such_file.urdf", &options), Err(Error::Model { .. })));
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct UrdfOptions {
     /// Folders that `package://` names and mesh files may come from, besides the URDF's own.
     pub package_dirs: Vec<PathBuf>,
