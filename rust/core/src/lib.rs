@@ -25,5 +25,5 @@ mod torque;
 
 pub use error::{Error, Result};
 pub use nalgebra;
-pub use torque::NoiseModel;
 pub use sample::Sample;
+pub use torque::NoiseModel;

@@ -18,7 +18,7 @@ const LOCATE_WITHIN: f64 = 0.05;
 /// use contactsense::robot::Robot;
 ///
 /// let robot = Arc::new(Robot::example_arm());
-/// let options = IsolatorOptions { torque_threshold: vec![0.5], max_contacts: 2, ..IsolatorOptions::default() };
+/// let options = IsolatorOptions { torque_threshold: Some(vec![0.5]), max_contacts: 2, ..IsolatorOptions::default() };
 /// let mut isolator = ContactIsolator::new(robot, &options)?;
 /// // No joint feels more than its threshold.
 /// assert!(isolator.isolate(&[0.4; 7], &[0.3; 7])?.contacts.is_empty());

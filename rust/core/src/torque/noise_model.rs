@@ -17,6 +17,8 @@ use crate::robot::{Robot, LARGEST};
 /// assert!(ContactIsolator::new(Robot::example_arm().into(), &options).is_ok());
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct NoiseModel {
     /// White noise of the torque, per sample (Nm; N for sliding joints).
     pub torque: Vec<f64>,

@@ -6,7 +6,7 @@ use contactsense::isolation::{ContactIsolator, IsolatorOptions};
 use contactsense::monitor::{ContactMonitor, MonitorOptions};
 use contactsense::particle::{ContactParticleFilter, FilterOptions};
 use contactsense::robot::Robot;
-use contactsense::NoiseModel;
+use contactsense::{NoiseModel, Sample};
 
 const Q: [f64; 7] = [0.3, 0.8, -0.4, 0.9, 0.5, 0.7, 0.2];
 /// Ticks in which an observer of 50/s at 1 kHz settles.
@@ -66,8 +66,8 @@ fn felt_by_detection() -> Vec<bool> {
         let mut monitor = ContactMonitor::new(robot.clone(), &options).expect("valid options");
         let motors: Vec<f64> = rest.iter().zip(&torque).map(|(rest, external)| rest - external).collect();
         let tick = |_| {
-            monitor.update(&Q, &[0.0; 7], &motors, None, None, None).expect("valid arguments");
-            monitor.report().collision
+            let report = monitor.update(&Sample::new(&Q, &[0.0; 7], &motors)).expect("valid arguments");
+            report.collision
         };
         (0..SETTLED).map(tick).last() == Some(true)
     };
