@@ -21,7 +21,7 @@ fn update(c: &mut Criterion) {
             b.iter(|| {
                 let k = step % run.poses.len();
                 step += 1;
-                black_box(filter.update(&run.poses[k], &run.torques[k]).expect("valid input").point)
+                black_box(filter.update(&run.poses[k], &run.torques[k]).expect("valid input").updates)
             })
         });
     }

@@ -16,6 +16,7 @@ mod math;
 pub mod monitor;
 pub mod observer;
 pub mod particle;
+mod posterior;
 pub mod robot;
 mod sample;
 pub mod sensor;

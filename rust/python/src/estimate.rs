@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use contactsense::particle::{ContactEstimate, Mode};
+use contactsense::nalgebra::{Matrix3, Vector3};
+use contactsense::particle::{FilterEstimate, Mode};
 use contactsense::robot::Robot;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -22,7 +23,7 @@ impl PyMode {
     /// The link's name.
     #[getter]
     fn link(&self) -> &str {
-        &self.robot.links()[self.mode.link].name
+        &self.robot.links()[self.mode.link.get()].name
     }
 
     /// `(3,)`, on the link's surface, world frame [m].
@@ -68,8 +69,19 @@ pub struct PyContactEstimate {
     pub robot: Arc<Robot>,
     /// Those that are looked on.
     pub links: Arc<[usize]>,
-    pub estimate: ContactEstimate,
+    pub found: FilterEstimate,
     pub time: f64,
+}
+
+impl PyContactEstimate {
+    fn contact_mode(&self) -> Option<&Mode> {
+        self.found.estimate.contact.as_ref()
+    }
+
+    fn vector<'py>(&self, py: Python<'py>, of: impl Fn(&Mode) -> Vector3<f64>) -> Bound<'py, PyArray1<f64>> {
+        let vector = self.contact_mode().map_or(Vector3::repeat(f64::NAN), of);
+        PyArray1::from_slice(py, vector.as_slice())
+    }
 }
 
 #[pymethods]
@@ -77,56 +89,56 @@ impl PyContactEstimate {
     /// Whether the torques show a contact.
     #[getter]
     fn contact(&self) -> bool {
-        self.estimate.contact
+        self.contact_mode().is_some()
     }
 
     /// "none", "started", "continued", "lost", "changed" (the contact is elsewhere than it was held to be) or
     /// "jumped" (the pose did, so the search began anew).
     #[getter]
     fn event(&self) -> &str {
-        self.estimate.event.name()
+        self.found.event.name()
     }
 
     /// The most probable link's name; empty without contact.
     #[getter]
     fn link(&self) -> &str {
-        self.estimate.link.map_or("", |link| &self.robot.links()[link].name)
+        self.contact_mode().map_or("", |mode| &self.robot.links()[mode.link.get()].name)
     }
 
     /// The most probable place on that link, `(3,)`, world frame [m]; NaN without contact.
     #[getter]
     fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.estimate.point.as_slice())
+        self.vector(py, |mode| mode.point)
     }
 
     /// Force on the robot, `(3,)`, world frame [N]; NaN without contact.
     #[getter]
     fn force<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.estimate.force.as_slice())
+        self.vector(py, |mode| mode.force)
     }
 
     /// Outward normal of the contact, `(3,)`, world frame; NaN without contact.
     #[getter]
     fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.estimate.normal.as_slice())
+        self.vector(py, |mode| mode.normal)
     }
 
     /// Of the force [N].
     #[getter]
     fn magnitude(&self) -> f64 {
-        self.estimate.force.norm()
+        self.contact_mode().map_or(f64::NAN, |mode| mode.force.norm())
     }
 
     /// Of the contact [N/m]; `None` without contact, and where the motion model has none.
     #[getter]
     fn stiffness(&self) -> Option<f64> {
-        self.estimate.stiffness
+        self.contact_mode()?.stiffness
     }
 
     /// Of the point, `(3, 3)`, world frame [m^2]: second moment of all particles about `point`, other modes included.
     #[getter]
     fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let c = &self.estimate.covariance;
+        let c = self.found.estimate.covariance.unwrap_or(Matrix3::repeat(f64::NAN));
         from_rows(py, (0..3).map(|i| [c[(i, 0)], c[(i, 1)], c[(i, 2)]]))
     }
 
@@ -134,7 +146,7 @@ impl PyContactEstimate {
     #[getter]
     fn link_probabilities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
-        for (&link, probability) in self.links.iter().zip(&self.estimate.link_probabilities) {
+        for (&link, probability) in self.links.iter().zip(&self.found.estimate.link_probabilities) {
             dict.set_item(&self.robot.links()[link].name, probability)?;
         }
         Ok(dict)
@@ -144,7 +156,7 @@ impl PyContactEstimate {
     #[getter]
     fn modes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let wrap = |mode: &Mode| Bound::new(py, PyMode { robot: self.robot.clone(), mode: *mode });
-        let modes: Vec<_> = self.estimate.modes.iter().map(wrap).collect::<PyResult<_>>()?;
+        let modes: Vec<_> = self.found.estimate.modes.iter().map(wrap).collect::<PyResult<_>>()?;
         PyTuple::new(py, modes)
     }
 
@@ -152,7 +164,7 @@ impl PyContactEstimate {
     /// that stays explains the torques at the last poses, touches the link near `point`, and its force follows the motion.
     #[getter]
     fn ambiguous(&self) -> bool {
-        self.estimate.ambiguous
+        self.found.estimate.ambiguous
     }
 
     /// Whether a push by one obstacle that stays explains the torques at the last poses, 24 at most and each 5 mm from the one
@@ -161,20 +173,20 @@ impl PyContactEstimate {
     /// ambiguous, too: two contacts, a moment, a payload, a pull, or biased torques.
     #[getter]
     fn explained(&self) -> bool {
-        self.estimate.explained
+        self.found.explained
     }
 
     /// Root mean square, over all joints, of the torque that the best push leaves over at this update, in standard
     /// deviations of the stated noise (`torque_noise` and `relative_noise`).
     #[getter]
     fn residual(&self) -> f64 {
-        self.estimate.residual
+        self.found.residual
     }
 
     /// Effective number of particles, before resampling.
     #[getter]
     fn effective_samples(&self) -> f64 {
-        self.estimate.effective_samples
+        self.found.effective_samples
     }
 
     /// As given to `update`; otherwise the number of updates since the start.
@@ -184,11 +196,11 @@ impl PyContactEstimate {
     }
 
     fn __repr__(&self) -> String {
-        if !self.estimate.contact {
+        let Some(mode) = self.contact_mode() else {
             return format!("ContactEstimate(no contact, event='{}')", self.event());
-        }
-        let (p, force) = (&self.estimate.point, self.magnitude());
-        let ambiguous = if self.estimate.ambiguous { ", ambiguous" } else { "" };
+        };
+        let (p, force) = (&mode.point, mode.force.norm());
+        let ambiguous = if self.found.estimate.ambiguous { ", ambiguous" } else { "" };
         let link = self.link();
         format!(
             "ContactEstimate('{link}', point=[{:.4}, {:.4}, {:.4}], magnitude={force:.2} N{ambiguous})",

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
 use contactsense::particle::{
-    ContactEstimate, ContactParticleFilter, FilterOptions, ForceModel, Likelihood, Motion, Schedule,
+    ContactParticleFilter, FilterEstimate, FilterOptions, ForceModel, Likelihood, Motion, Schedule,
 };
 use contactsense::robot::Robot;
 use numpy::{PyArray1, PyArray2};
@@ -193,9 +193,9 @@ impl PyContactParticleFilter {
         } else {
             update_with_signals(py, filter, &q, &tau_ext)?
         };
-        let estimate = estimate.map_err(|error| to_python(py, error))?;
-        let time = time.map_or(estimate.updates as f64, |time| time.0);
-        Ok(PyContactEstimate { links: sole.links().into(), robot: self.robot.clone(), estimate, time })
+        let found = estimate.map_err(|error| to_python(py, error))?;
+        let time = time.map_or(found.updates as f64, |time| time.0);
+        Ok(PyContactEstimate { links: sole.links().into(), robot: self.robot.clone(), found, time })
     }
 
     /// Forgets all updates.
@@ -237,7 +237,7 @@ fn update_with_signals(
     filter: &mut ContactParticleFilter,
     q: &[f64],
     tau_ext: &[f64],
-) -> PyResult<contactsense::Result<ContactEstimate>> {
+) -> PyResult<contactsense::Result<FilterEstimate>> {
     let stop = filter.stop();
     let (updated, raised) = py.detach(|| {
         let (done, waiting) = channel();

@@ -1,6 +1,6 @@
 //! The adaptive schedule: how sharply to weigh and how far to move copies, from what the data show.
 
-use super::schedule::NEW_POSE;
+use super::step_noise::NEW_POSE;
 
 /// Least share of a measurement that counts although the robot stands still.
 const STANDING: f64 = 0.02;

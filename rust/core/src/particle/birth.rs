@@ -4,13 +4,13 @@ use std::mem::size_of;
 
 use super::columns::Slice;
 use super::instant::Instant;
-use super::memory::space;
 use super::motion::{put, signed};
 use super::options::{FilterOptions, Likelihood, Motion};
 use super::rejuvenation::tangent;
 use super::response::ResponseModel;
 use crate::error::{Error, Result};
 use crate::math::random::Stream;
+use crate::posterior::memory::space;
 use crate::robot::Robot;
 use crate::surface::SurfacePoint;
 

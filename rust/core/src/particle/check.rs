@@ -12,7 +12,6 @@ use super::weight;
 use super::window::Window;
 use crate::math::chi_square::upper_limit;
 use crate::robot::Robot;
-use crate::torque::TorqueNoise;
 
 /// Errors of torque may be so many times as large as is stated [1].
 const GRANTED: f64 = 4.0;
@@ -37,7 +36,6 @@ const AMPLE: f64 = 0.25;
 /// The test, and what it found at the last update.
 #[derive(Debug, Clone)]
 pub(super) struct Check {
-    noise: TorqueNoise,
     /// Stated standard deviation of each torque (Nm).
     deviation: Vec<f64>,
     /// Torques that a push leaves over, one a velocity variable [Nm].
@@ -54,13 +52,12 @@ pub(super) struct Check {
 }
 
 impl Check {
-    pub fn new(robot: &Robot, instant: &Instant, options: &FilterOptions, noise: TorqueNoise) -> Self {
+    pub fn new(robot: &Robot, instant: &Instant, options: &FilterOptions) -> Self {
         // Only where an obstacle is assumed and its force is believed to follow the motion.
         let springy = options.motion == Motion::Curvature && options.likelihood == Likelihood::Gaussian;
         Check {
             left: vec![0.0; robot.nv()],
             deviation: vec![1.0; robot.nv()],
-            noise,
             window: Window::new(instant),
             search: springy.then(|| Search::new(robot.links().len(), robot.nv())),
             stiffness: options.stiffness_range,
@@ -122,7 +119,7 @@ impl Check {
     fn left_over(&mut self, push: &Push<'_>) -> f64 {
         let torque = &push.instant.torque;
         push.left_over(&mut self.left);
-        self.noise.set_deviations(torque, &mut self.deviation);
+        push.instant.noise.set_deviations(torque, &mut self.deviation);
         self.left.iter().zip(&self.deviation).map(|(left, noise)| (left / noise).powi(2)).sum()
     }
 

@@ -2,8 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::memory::filled;
 use crate::error::Result;
+use crate::posterior::memory::filled;
+use crate::posterior::parallel::Pieces;
+use crate::posterior::{ContactSample, ContactSamples};
 
 macro_rules! columns {
     ($($(#[$doc:meta])* $name:ident: $kind:ty = $empty:expr,)*) => {
@@ -61,8 +63,12 @@ macro_rules! columns {
             }
         }
 
-        impl<'a> Slice<'a> {
-            pub(super) fn split_at(self, middle: usize) -> (Slice<'a>, Slice<'a>) {
+        impl<'a> Pieces for Slice<'a> {
+            fn count(&self) -> usize {
+                self.len()
+            }
+
+            fn split(self, middle: usize) -> (Slice<'a>, Slice<'a>) {
                 $(let $name = self.$name.split_at_mut(middle);)*
                 (Slice { $($name: $name.0,)* }, Slice { $($name: $name.1,)* })
             }
@@ -120,5 +126,18 @@ impl Columns {
 impl Slice<'_> {
     pub fn len(&self) -> usize {
         self.link.len()
+    }
+}
+
+impl ContactSamples for Columns {
+    #[inline]
+    fn sample(&self, k: usize) -> ContactSample {
+        ContactSample {
+            link: self.link[k] as usize,
+            point: self.point[k],
+            normal: self.normal[k],
+            force: self.normal[k] * -self.force[k].max(0.0),
+            stiffness: self.stiffness[k],
+        }
     }
 }

@@ -6,11 +6,11 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use super::columns::Columns;
-use super::estimate::ContactEstimate;
+use super::estimate::FilterEstimate;
 use super::options::FilterOptions;
-use super::parallel::Pool;
 use super::state::FilterState;
 use crate::error::{Error, Result};
+use crate::posterior::parallel::Pool;
 use crate::robot::Robot;
 
 /// Finds one contact anywhere on a robot from joint torques, by particles on its surface (Bimbo 2019).
@@ -31,11 +31,11 @@ use crate::robot::Robot;
 /// let robot = Arc::new(Robot::example_arm());
 /// let options = FilterOptions { particles: 1000, ..FilterOptions::default() };
 /// let mut filter = ContactParticleFilter::new(robot, options)?;
-/// let estimate = filter.update(&[0.4; 7], &[0.0; 7])?;
-/// assert!(!estimate.contact);
+/// let found = filter.update(&[0.4; 7], &[0.0; 7])?;
+/// assert!(found.estimate.contact.is_none());
 ///
-/// let estimate = filter.update(&[0.4; 7], &[1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])?;
-/// assert!(estimate.contact && estimate.ambiguous);
+/// let found = filter.update(&[0.4; 7], &[1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])?;
+/// assert!(found.estimate.contact.is_some() && found.estimate.ambiguous);
 /// assert_eq!(filter.particles().len(), 1000);
 /// # Ok::<(), contactsense::Error>(())
 /// ```
@@ -64,7 +64,7 @@ impl ContactParticleFilter {
     ///
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) names the argument; the filter is unchanged.
-    pub fn update(&mut self, q: &[f64], tau_ext: &[f64]) -> Result<&ContactEstimate> {
+    pub fn update(&mut self, q: &[f64], tau_ext: &[f64]) -> Result<&FilterEstimate> {
         let Self { state, pool } = self;
         state.read(q, tau_ext)?;
         pool.install(|| state.step());
@@ -73,7 +73,7 @@ impl ContactParticleFilter {
             state.reset();
             return Err(Error::Stopped);
         }
-        Ok(&state.estimate)
+        Ok(&state.found)
     }
 
     /// A flag that stops an update when another thread sets it. The update then ends within some seconds, even with ten
@@ -88,18 +88,18 @@ impl ContactParticleFilter {
     }
 
     /// The last estimate.
-    pub fn estimate(&self) -> &ContactEstimate {
-        &self.state.estimate
+    pub fn estimate(&self) -> &FilterEstimate {
+        &self.state.found
     }
 
     /// The particles after the last update.
     pub fn particles(&self) -> &Columns {
-        &self.state.particles
+        &self.state.cloud.particles
     }
 
     /// Their weights, which sum to one.
     pub fn weights(&self) -> &[f64] {
-        &self.state.weights
+        &self.state.cloud.weights
     }
 
     /// Indices of the links that are looked on.
@@ -109,13 +109,15 @@ impl ContactParticleFilter {
 
     /// Contact point of particle k, world frame (m).
     pub fn point(&self, k: usize) -> Vector3<f64> {
-        let FilterState { instant, particles, .. } = &self.state;
+        let FilterState { instant, cloud, .. } = &self.state;
+        let particles = &cloud.particles;
         instant.pose(particles.link[k] as usize).transform_point(&particles.point[k])
     }
 
     /// Outward normal of particle k, world frame.
     pub fn normal(&self, k: usize) -> Vector3<f64> {
-        let FilterState { instant, particles, .. } = &self.state;
+        let FilterState { instant, cloud, .. } = &self.state;
+        let particles = &cloud.particles;
         instant.pose(particles.link[k] as usize).rotation * particles.normal[k]
     }
 }

@@ -3,9 +3,9 @@
 
 use nalgebra::Vector3;
 
-use crate::robot::{Kinematics, Robot};
+use crate::robot::{JointKind, Kinematics, Robot};
 use crate::spatial::Pose;
-use crate::torque::{Frames, Target};
+use crate::torque::{Frames, Target, TorqueNoise};
 
 /// Where a link was, and how large it is.
 #[derive(Debug, Clone)]
@@ -21,18 +21,21 @@ struct Extent {
 #[derive(Debug, Clone)]
 pub(super) struct Instant {
     kinematics: Kinematics,
+    pub noise: TorqueNoise,
     pub frames: Frames,
     pub target: Target,
     /// The measured torque, one a velocity variable [Nm, N], and its standard deviation.
     pub torque: Vec<f64>,
     pub deviation: Vec<f64>,
+    /// Whether a velocity variable is a rotation's.
+    pub turning: Vec<bool>,
     /// One a link of the robot.
     extents: Vec<Extent>,
 }
 
 impl Instant {
     /// Of a robot of which these links can be in contact.
-    pub fn new(robot: &Robot, wanted: Vec<usize>) -> Self {
+    pub fn new(robot: &Robot, noise: TorqueNoise, wanted: Vec<usize>) -> Self {
         let frames = Frames::new(robot, wanted);
         let extents = robot.links().iter().map(|link| {
             let sphere = link.surface.as_ref().map(|surface| surface.bounding_sphere());
@@ -41,6 +44,8 @@ impl Instant {
         });
         Instant {
             kinematics: Kinematics::new(robot),
+            noise,
+            turning: turning(robot),
             target: Target::new(&frames),
             torque: vec![0.0; robot.nv()],
             deviation: vec![1.0; robot.nv()],
@@ -49,9 +54,15 @@ impl Instant {
         }
     }
 
-    /// Takes on a checked configuration; torque and deviation are set.
-    pub fn update(&mut self, robot: &Robot, q: &[f64]) {
+    /// Takes on a checked configuration and torque, weighed by the noise or as it is.
+    pub fn update(&mut self, robot: &Robot, q: &[f64], torque: &[f64], weighed: bool) {
         self.stand();
+        self.torque.copy_from_slice(torque);
+        if weighed {
+            self.noise.set_deviations(torque, &mut self.deviation);
+        } else {
+            self.deviation.fill(1.0);
+        }
         self.kinematics.set_configuration(robot, q);
         self.frames.update(robot, &self.kinematics, &self.deviation);
         self.target.set(&self.frames, &self.torque, &self.deviation);
@@ -92,4 +103,20 @@ impl Instant {
         let turned = (here.rotation - pose.rotation).norm() / std::f64::consts::SQRT_2;
         centre.norm() + turned * radius
     }
+}
+
+/// Whether each velocity variable is a rotation's.
+fn turning(robot: &Robot) -> Vec<bool> {
+    let mut turning = vec![false; robot.nv()];
+    for body in 0..robot.bodies.len() {
+        let range = robot.velocity_range(body);
+        // A free flyer's linear part comes first.
+        let first = match robot.bodies[body].kind {
+            JointKind::Prismatic => range.end,
+            JointKind::FreeFlyer => range.start + 3,
+            JointKind::Revolute | JointKind::Continuous => range.start,
+        };
+        turning[first..range.end].fill(true);
+    }
+    turning
 }

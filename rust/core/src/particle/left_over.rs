@@ -1,8 +1,8 @@
 //! The torque that the best particle leaves over.
 
-use super::columns::Columns;
+use super::cloud::Cloud;
+use super::instant::Instant;
 use super::likelihood::{misfit, Belief};
-use crate::robot::{JointKind, Robot};
 
 /// Torque that is left over.
 pub(super) struct LeftOver {
@@ -16,8 +16,10 @@ pub(super) struct LeftOver {
 }
 
 impl LeftOver {
-    /// Of so many joints' torques, of which the squared norm was measured, in units of the noise.
-    pub fn of(particles: &Columns, weights: &[f64], measured: f64, joints: usize) -> Self {
+    /// What the best particle leaves over of the torques of an instant.
+    pub fn of(cloud: &Cloud, instant: &Instant) -> Self {
+        let Cloud { particles, weights, .. } = cloud;
+        let (measured, joints) = (instant.target.squared, instant.torque.len());
         let (mut best, mut greatest) = (0, -1.0);
         for (k, &weight) in weights.iter().enumerate() {
             if weight > greatest {
@@ -34,8 +36,9 @@ impl LeftOver {
         self.share > share && self.misfit > 9.0 * self.joints as f64
     }
 
-    /// About as much moment at the joints that turn, where torques were measured with a noise [Nm].
-    pub fn moment(&self, torque: &[f64], noise: &[f64], turning: &[bool]) -> f64 {
+    /// About as much moment at the joints that turn [Nm].
+    pub fn moment(&self, instant: &Instant) -> f64 {
+        let Instant { torque, deviation: noise, turning, .. } = instant;
         let (mut moment, mut deviations) = (0.0, 0.0);
         for ((torque, noise), _) in torque.iter().zip(noise).zip(turning).filter(|(_, turns)| **turns) {
             moment += torque * torque;
@@ -45,20 +48,4 @@ impl LeftOver {
         let unit = if deviations > 0.0 { (moment / deviations).sqrt() } else { 0.0 };
         self.misfit.sqrt() * unit
     }
-}
-
-/// Whether each velocity variable is a rotation's.
-pub(super) fn turning(robot: &Robot) -> Vec<bool> {
-    let mut turning = vec![false; robot.nv()];
-    for body in 0..robot.bodies.len() {
-        let range = robot.velocity_range(body);
-        // A free flyer's linear part comes first.
-        let first = match robot.bodies[body].kind {
-            JointKind::Prismatic => range.end,
-            JointKind::FreeFlyer => range.start + 3,
-            JointKind::Revolute | JointKind::Continuous => range.start,
-        };
-        turning[first..range.end].fill(true);
-    }
-    turning
 }

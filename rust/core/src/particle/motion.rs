@@ -6,7 +6,7 @@ use super::columns::Slice;
 use super::instant::Instant;
 use super::options::Motion;
 use super::response::ResponseModel;
-use super::schedule::Noise;
+use super::step_noise::StepNoise;
 use crate::math::random::Stream;
 use crate::robot::Robot;
 use crate::surface::{ClosestPoint, Surface};
@@ -24,7 +24,7 @@ pub(super) struct Move {
     /// Logarithms of the least and the greatest radius.
     pub log_radius: [f64; 2],
     pub response_model: ResponseModel,
-    pub noise: Noise,
+    pub noise: StepNoise,
     /// Standard deviation of the force of particles that are not tied to an obstacle [N].
     pub loose_force: f64,
     pub stiffness_range: [f64; 2],

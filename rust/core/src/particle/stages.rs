@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::columns::Columns;
 use super::options::FilterOptions;
-use super::schedule::Noise;
 use super::state::FilterState;
+use super::step_noise::StepNoise;
 use crate::error::Result;
 use crate::robot::Robot;
 
@@ -50,7 +50,7 @@ impl Stages {
     pub fn motion(&mut self, q: &[f64], tau_ext: &[f64]) -> Result<()> {
         self.0.read(q, tau_ext)?;
         let noise = self.noise();
-        self.0.predict(&noise, self.0.particles.len());
+        self.0.predict(&noise, self.0.cloud.particles.len());
         Ok(())
     }
 
@@ -73,10 +73,10 @@ impl Stages {
 
     /// The particles.
     pub fn particles(&self) -> &Columns {
-        &self.0.particles
+        &self.0.cloud.particles
     }
 
-    fn noise(&self) -> Noise {
-        Noise::at(&self.0.options, self.0.age, self.0.instant.displacement())
+    fn noise(&self) -> StepNoise {
+        StepNoise::at(&self.0.options, self.0.clock.age, self.0.instant.displacement())
     }
 }

@@ -1,7 +1,7 @@
 //! The last poses of the robot, and the torques that were measured at them.
 
 use super::instant::Instant;
-use super::schedule::NEW_POSE;
+use super::step_noise::NEW_POSE;
 use crate::torque::{Frame, Target};
 
 /// Poses that are kept: some eight motions of three samples, which tell a push on a link moved by two joints only from

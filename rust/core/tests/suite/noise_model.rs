@@ -50,7 +50,7 @@ fn felt_by_filter() -> Vec<bool> {
     let felt = |torque: Vec<f64>| {
         let options = FilterOptions { particles: 50, noise: Some(noise()), ..FilterOptions::default() };
         let mut filter = ContactParticleFilter::new(Robot::example_arm().into(), options).expect("valid");
-        filter.update(&Q, &torque).expect("valid arguments").contact
+        filter.update(&Q, &torque).expect("valid arguments").estimate.contact.is_some()
     };
     torques().map(felt).collect()
 }

@@ -20,11 +20,13 @@ fn a_ball_is_found_on_meshes_and_on_primitives() {
             for (q, torque) in run.poses.iter().zip(&run.torques) {
                 filter.update(q, torque).expect("valid input");
             }
-            let estimate = filter.estimate();
-            let error = (estimate.point - run.points[39]).norm();
-            assert_eq!(estimate.link, Some(run.link.get()), "{} {link}", robot.name());
+            let found = filter.estimate();
+            let estimate = &found.estimate;
+            let contact = estimate.contact.expect("a contact");
+            let error = (contact.point - run.points[39]).norm();
+            assert_eq!(contact.link, run.link, "{} {link}", robot.name());
             assert!(error < 5e-3, "{} {link}: {error}", robot.name());
-            assert!(estimate.explained && !estimate.ambiguous && estimate.event == Event::Continued);
+            assert!(found.explained && !estimate.ambiguous && found.event == Event::Continued);
             let sum: f64 = estimate.link_probabilities.iter().sum();
             assert!((sum - 1.0).abs() < 1e-9);
         }

@@ -10,7 +10,7 @@ use crate::particle::window::Window;
 use crate::robot::{JointDescription, JointKind, LinkDescription, LinkIndex, Robot, RobotDescription};
 use crate::spatial::Pose;
 use crate::surface::{Geometry, Part};
-use crate::torque::ForceModel;
+use crate::torque::{ForceModel, NoiseModel};
 
 const RADIUS: f64 = 0.05;
 const STIFFNESS: f64 = 2500.0;
@@ -59,15 +59,15 @@ fn arm() -> Robot {
 /// Small motions of the arm, with the torques that `torque` gives at a pose, for the outermost link.
 fn window(robot: &Robot, torque: impl Fn(&[f64], &Pose) -> Vec<f64>) -> Window {
     let link = robot.links().len() - 1;
-    let mut instant = Instant::new(robot, vec![link]);
+    let noise = NoiseModel::short(vec![0.02], 0.03).of(robot).expect("valid noise");
+    let mut instant = Instant::new(robot, noise, vec![link]);
     let mut window = Window::new(&instant);
     for k in 0..POSES {
         let q: Vec<f64> = (0..robot.nv())
             .map(|i| 0.3 * (1.0 + i as f64).sin() + 0.02 * (1.3 * k as f64 + 2.1 * i as f64).sin())
             .collect();
-        instant.torque = torque(&q, &robot.link_pose(&q, LinkIndex::new(link)).expect("a valid link"));
-        instant.deviation = instant.torque.iter().map(|torque| f64::hypot(0.02, 0.03 * torque)).collect();
-        instant.update(robot, &q);
+        let torque = torque(&q, &robot.link_pose(&q, LinkIndex::new(link)).expect("a valid link"));
+        instant.update(robot, &q, &torque, true);
         window.take_in(&instant, link, 0.0);
     }
     window

@@ -2,13 +2,13 @@
 
 use super::FilterState;
 use crate::particle::birth::Birth;
+use crate::particle::cloud::Cloud;
 use crate::particle::columns::Slice;
 use crate::particle::estimate::Event;
 use crate::particle::options::{Likelihood, Motion};
-use crate::particle::parallel::Course;
 use crate::particle::rejuvenation::Rejuvenation;
-use crate::particle::resampling::systematic;
-use crate::particle::schedule::Noise;
+use crate::particle::step_noise::StepNoise;
+use crate::posterior::parallel::{Course, Pieces};
 
 /// Share of the particles that look for a contact on the whole surface, where nothing explains the torque.
 const REINITIALISED: f64 = 0.5;
@@ -18,36 +18,32 @@ const SLIP: f64 = 0.5;
 impl FilterState {
     /// Nothing explains the torque, as after a jump of the contact: looks for it on the whole surface at once, beside what
     /// was known. Returns how many particles are effective then, and what happened.
-    pub(super) fn reinitialise(&mut self, noise: &Noise, moved: f64, event: Event) -> (f64, Event) {
-        let count = self.particles.len();
+    pub(super) fn reinitialise(&mut self, noise: &StepNoise, moved: f64, event: Event) -> (f64, Event) {
+        let count = self.cloud.particles.len();
         let kept = self.resample(noise, moved, REINITIALISED);
         self.instant.stand();
         self.adaptation.begin();
-        self.predict(&Noise::none(), kept);
-        let effective = self.weigh(0.0, &Noise::none());
-        let found: f64 = self.weights[kept..count].iter().sum();
+        self.predict(&StepNoise::none(), kept);
+        let effective = self.weigh(0.0, &StepNoise::none());
+        let found: f64 = self.cloud.weights[kept..count].iter().sum();
         (effective, if found > 0.5 { Event::Changed } else { event })
     }
 
     /// Draws particles anew, a share of them from the whole surface: those behind the others, whose number is returned.
-    pub fn resample(&mut self, noise: &Noise, moved: f64, fresh_share: f64) -> usize {
-        let count = self.particles.len();
+    pub fn resample(&mut self, noise: &StepNoise, moved: f64, fresh_share: f64) -> usize {
+        let count = self.cloud.particles.len();
         let anew = ((fresh_share * count as f64) as usize).min(count - 1);
         let kept = count - anew;
-        let offset = self.stream().uniform(0);
-        systematic(&self.weights, offset, &mut self.parents[..kept]);
-        self.parents[kept..].fill(0);
-        self.spare.gather(&self.particles, &self.parents);
-        std::mem::swap(&mut self.particles, &mut self.spare);
+        let offset = self.clock.stream().uniform(0);
+        self.cloud.copy(kept, offset);
         let apart = noise.point.unwrap_or_else(|| {
             // A contact that is held to be fixed is not: it moves about as much as the robot does.
             let slip = if self.options.motion == Motion::Curvature { 0.0 } else { SLIP * moved };
-            self.adaptation.apart(self.modes.spread).max(slip)
+            self.adaptation.apart(self.clusters.spread).max(slip)
         });
-        self.particles.log_weight[..kept].fill(0.0);
         self.rejuvenate(kept, apart, noise.point.is_some());
         self.bear(kept, false);
-        self.weights.fill(1.0 / count as f64);
+        self.cloud.level();
         kept
     }
 
@@ -61,19 +57,21 @@ impl FilterState {
             keep_torque: self.options.likelihood == Likelihood::Gaussian,
             stiffness_range: self.options.stiffness_range,
             most_force: self.options.force_range[1],
-            random: self.stream(),
+            random: self.clock.stream(),
         };
-        let Self { robot, instant, particles, parents, options, stop, .. } = self;
+        let Self { robot, instant, cloud, options, stop, .. } = self;
+        let Cloud { particles, parents, .. } = cloud;
         let work = |start: usize, mut slice: Slice<'_>| {
             apart.apply(robot, instant, parents, start, &mut slice);
         };
-        Course { threads: options.threads, stop }.for_each(particles.slice().split_at(kept).0, 0, &work);
+        Course { threads: options.threads, stop }.for_each(particles.slice().split(kept).0, 0, &work);
     }
 
     /// Makes all particles behind the first ones anew, from the whole surface: evenly, or at random.
     pub(super) fn bear(&mut self, kept: usize, evenly: bool) {
-        let (response_model, random) = (self.response_model(), self.stream());
-        let Self { robot, instant, births, particles, options, stop, .. } = self;
+        let (response_model, random) = (self.response_model(), self.clock.stream());
+        let Self { robot, instant, cloud, options, stop, .. } = self;
+        let Cloud { births, particles, .. } = cloud;
         let count = particles.len();
         let birth = Birth { births, robot, instant, response_model, motion: options.motion, random };
         let work = |start: usize, mut slice: Slice<'_>| {
@@ -85,6 +83,6 @@ impl FilterState {
                 }
             }
         };
-        Course { threads: options.threads, stop }.for_each(particles.slice().split_at(kept).1, kept, &work);
+        Course { threads: options.threads, stop }.for_each(particles.slice().split(kept).1, kept, &work);
     }
 }

@@ -21,12 +21,13 @@ fn the_point_and_the_force_are_found() {
             for (q, torque) in run.q.iter().zip(&run.torque) {
                 filter.update(q, torque).expect("valid input");
             }
-            let estimate = filter.estimate();
-            let link = robot.links()[estimate.link.expect("a contact")].name.as_str();
+            let estimate = &filter.estimate().estimate;
+            let contact = estimate.contact.expect("a contact");
+            let link = robot.links()[contact.link.get()].name.as_str();
             let (point, force) = (Vector3::from(run.point), Vector3::from(run.force));
-            let error = (estimate.point - point).norm();
-            let share = (estimate.force - force).norm() / force.norm();
-            let stiffness = estimate.stiffness.unwrap_or(f64::NAN) / run.stiffness;
+            let error = (contact.point - point).norm();
+            let share = (contact.force - force).norm() / force.norm();
+            let stiffness = contact.stiffness.unwrap_or(f64::NAN) / run.stiffness;
             let line = format!(
                 "run {k} on {}: {link}, {error:.4} m off, force {share:.3} off, stiffness {stiffness:.2}, ambiguous {}",
                 run.link, estimate.ambiguous

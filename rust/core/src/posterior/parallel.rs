@@ -2,7 +2,6 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::columns::Slice;
 #[cfg(feature = "parallel")]
 use crate::error::Error;
 use crate::error::Result;
@@ -12,9 +11,18 @@ const GRAIN: usize = 512;
 /// As many take some 10 ms: after so many it is seen whether to stop.
 const MOST_AT_ONCE: usize = 65_536;
 
-/// How the particles are worked on.
+/// What can be shared between threads.
+pub(crate) trait Pieces: Sized + Send {
+    /// How many there are.
+    fn count(&self) -> usize;
+
+    /// The first ones, and the others.
+    fn split(self, middle: usize) -> (Self, Self);
+}
+
+/// How samples are worked on.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Course<'a> {
+pub(crate) struct Course<'a> {
     /// One, or as many as the pool has that this is called from.
     pub threads: usize,
     /// Nothing more is done once it is set.
@@ -22,18 +30,18 @@ pub(super) struct Course<'a> {
 }
 
 impl Course<'_> {
-    /// Calls `work` on pieces of the particles with the number of their first one.
-    pub fn for_each(self, particles: Slice<'_>, start: usize, work: &(impl Fn(usize, Slice<'_>) + Sync)) {
-        let count = particles.len();
+    /// Calls `work` on pieces of the samples with the number of their first one.
+    pub fn for_each<P: Pieces>(self, samples: P, start: usize, work: &(impl Fn(usize, P) + Sync)) {
+        let count = samples.count();
         let most = if self.threads < 2 { MOST_AT_ONCE } else { GRAIN };
         if self.stop.load(Ordering::Relaxed) {
             return;
         }
         if count <= most {
-            return work(start, particles);
+            return work(start, samples);
         }
         let middle = count / 2;
-        let (left, right) = particles.split_at(middle);
+        let (left, right) = samples.split(middle);
         let first = || self.for_each(left, start, work);
         let second = || self.for_each(right, start + middle, work);
         if self.threads < 2 {
@@ -58,7 +66,7 @@ fn join(left: impl FnOnce(), right: impl FnOnce()) {
 
 /// The threads of a filter; none where it has one, or without the feature `parallel`: the answers are the same.
 #[derive(Debug)]
-pub(super) struct Pool {
+pub(crate) struct Pool {
     #[cfg(feature = "parallel")]
     pool: Option<rayon::ThreadPool>,
 }

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 ///
 /// # Errors
 /// [`Error::Memory`] where there is no space.
-pub(super) fn space<T>(count: usize) -> Result<Vec<T>> {
+pub(crate) fn space<T>(count: usize) -> Result<Vec<T>> {
     let mut values = Vec::new();
     match values.try_reserve_exact(count) {
         Ok(()) => Ok(values),
@@ -21,7 +21,7 @@ pub(super) fn space<T>(count: usize) -> Result<Vec<T>> {
 ///
 /// # Errors
 /// [`Error::Memory`] where there is no space.
-pub(super) fn filled<T: Clone>(value: T, count: usize) -> Result<Vec<T>> {
+pub(crate) fn filled<T: Clone>(value: T, count: usize) -> Result<Vec<T>> {
     let mut values = space(count)?;
     values.resize(count, value);
     Ok(values)

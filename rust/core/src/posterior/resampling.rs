@@ -3,7 +3,7 @@
 /// Weights from their logarithms, summing to one; returns the effective sample size.
 ///
 /// A logarithm that is no number is a weight of zero. All alike where no particle has a weight.
-pub(super) fn normalise(log_weights: &mut [f64], weights: &mut [f64]) -> f64 {
+pub(crate) fn normalise(log_weights: &mut [f64], weights: &mut [f64]) -> f64 {
     let mut greatest = f64::NEG_INFINITY;
     for log in log_weights.iter_mut() {
         *log = weightless(*log);
@@ -40,7 +40,7 @@ fn weightless(log: f64) -> f64 {
 }
 
 /// Effective sample size of every `stride`-th particle under `log_weight`, as a share.
-pub(super) fn effective_share(count: usize, stride: usize, log_weight: impl Fn(usize) -> f64) -> f64 {
+pub(crate) fn effective_share(count: usize, stride: usize, log_weight: impl Fn(usize) -> f64) -> f64 {
     let log_weight = |k: usize| weightless(log_weight(k));
     let greatest = (0..count).step_by(stride).map(log_weight).fold(f64::NEG_INFINITY, f64::max);
     let (mut sum, mut squares, mut taken) = (0.0, 0.0, 0.0);
@@ -59,7 +59,7 @@ pub(super) fn effective_share(count: usize, stride: usize, log_weight: impl Fn(u
 
 /// Draws `parents.len()` indices in proportion to `weights` (which sum to one), ascending; `offset` is in [0, 1). None has a
 /// weight of zero, unless all have.
-pub(super) fn systematic(weights: &[f64], offset: f64, parents: &mut [u32]) {
+pub(crate) fn systematic(weights: &[f64], offset: f64, parents: &mut [u32]) {
     let step = 1.0 / parents.len() as f64;
     // Rounded weights may sum to less than the last tooth of the comb.
     let last = weights.iter().rposition(|weight| *weight > 0.0).unwrap_or(0);

@@ -1,12 +1,13 @@
-//! Clusters of particles on the surface: neighbouring cells of a grid in each link's frame.
+//! Modes of a posterior: clusters of weighted samples on the surface: neighbouring cells of a grid in each link's frame.
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::columns::Columns;
-use super::estimate::Mode;
+use super::contact_sample::ContactSamples;
 use super::memory::{filled, space};
+use super::mode::Mode;
+use super::moments::Moments;
 use crate::error::Result;
-use crate::robot::Robot;
+use crate::robot::{LinkIndex, Robot};
 use crate::torque::Frames;
 
 /// Edge of a cell [m].
@@ -14,7 +15,7 @@ const CELL: f64 = 0.015;
 /// Cells lighter than this share of the heaviest join no clusters.
 const LIGHT: f64 = 0.02;
 /// Modes that are reported at most.
-pub(super) const MOST_MODES: usize = 8;
+pub(crate) const MOST_MODES: usize = 8;
 const EMPTY: u32 = u32::MAX;
 /// Steps uphill to where a mode is densest.
 const CLIMB: usize = 8;
@@ -31,54 +32,9 @@ struct Cell {
     cluster: Moments,
 }
 
-/// Weighted sums over particles of one link.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Moments {
-    pub weight: f64,
-    point: Vector3<f64>,
-    square: Matrix3<f64>,
-    normal: Vector3<f64>,
-    force: f64,
-    stiffness: f64,
-}
-
-impl Moments {
-    fn add(&mut self, particles: &Columns, k: usize, weight: f64) {
-        let point = particles.point[k];
-        let weighted = point * weight;
-        self.weight += weight;
-        self.point += weighted;
-        self.square += weighted * point.transpose();
-        self.normal += particles.normal[k] * weight;
-        self.force += weight * particles.force[k].max(0.0);
-        self.stiffness += weight * particles.stiffness[k];
-    }
-
-    fn join(&mut self, other: &Moments) {
-        self.weight += other.weight;
-        self.point += other.point;
-        self.square += other.square;
-        self.normal += other.normal;
-        self.force += other.force;
-        self.stiffness += other.stiffness;
-    }
-
-    /// Root of the mean squared distance from the mean [m].
-    fn spread(&self) -> f64 {
-        let mean = self.point / self.weight;
-        (self.square.trace() / self.weight - mean.norm_squared()).max(0.0).sqrt()
-    }
-
-    /// Weighted second moment about `centre` (link frame), not divided by the weight.
-    fn about(&self, centre: &Vector3<f64>) -> Matrix3<f64> {
-        self.square - self.point * centre.transpose() - centre * self.point.transpose()
-            + centre * centre.transpose() * self.weight
-    }
-}
-
 /// Buffers for finding modes.
 #[derive(Debug, Clone)]
-pub(super) struct Modes {
+pub(crate) struct Clusters {
     slots: Vec<u32>,
     cells: Vec<Cell>,
     roots: Vec<u32>,
@@ -89,29 +45,29 @@ pub(super) struct Modes {
     pub spread: f64,
 }
 
-impl Modes {
-    /// Memory that one particle takes at most [bytes].
+impl Clusters {
+    /// Memory that one sample takes at most [bytes].
     pub const SIZE: usize = std::mem::size_of::<Cell>() + 5 * std::mem::size_of::<u32>();
 
     /// # Errors
-    /// [`Error::Memory`](crate::Error::Memory) where there is no space for so many particles.
-    pub fn new(particles: usize, links: usize) -> Result<Self> {
-        Ok(Modes {
-            slots: filled(EMPTY, (2 * particles).next_power_of_two())?,
-            cells: space(particles)?,
-            roots: space(particles)?,
+    /// [`Error::Memory`](crate::Error::Memory) where there is no space for so many samples.
+    pub fn new(samples: usize, links: usize) -> Result<Self> {
+        Ok(Clusters {
+            slots: filled(EMPTY, (2 * samples).next_power_of_two())?,
+            cells: space(samples)?,
+            roots: space(samples)?,
             links: vec![Moments::default(); links],
             found: Vec::with_capacity(MOST_MODES),
             spread: 0.0,
         })
     }
 
-    /// Weight of the particles on a link.
+    /// Weight of the samples on a link.
     pub fn on_link(&self, link: usize) -> f64 {
         self.links[link].weight
     }
 
-    /// Second moment of all particles about a point, world frame [m^2].
+    /// Second moment of all samples about a point, world frame [m^2].
     pub fn covariance(&self, frames: &Frames, point: &Vector3<f64>) -> Matrix3<f64> {
         let mut sum = Matrix3::zeros();
         for &link in &frames.wanted {
@@ -122,19 +78,19 @@ impl Modes {
         sum
     }
 
-    /// Finds the modes of weighted particles (the weights sum to one), best first.
-    pub fn find(&mut self, robot: &Robot, frames: &Frames, particles: &Columns, weights: &[f64]) {
+    /// Finds the modes of weighted samples (the weights sum to one), best first.
+    pub fn find(&mut self, robot: &Robot, frames: &Frames, samples: &impl ContactSamples, weights: &[f64]) {
         self.slots.fill(EMPTY);
         self.cells.clear();
         self.links.fill(Moments::default());
         for (k, &weight) in weights.iter().enumerate() {
             if weight > 0.0 {
-                let link = particles.link[k];
-                let cell = self.cell(key(link, &cell_of(&particles.point[k])));
+                let sample = samples.sample(k);
+                let cell = self.cell(key(sample.link, &cell_of(&sample.point)));
                 let cell = &mut self.cells[cell];
                 cell.weight += weight;
-                cell.sum += particles.point[k] * weight;
-                cell.cluster.add(particles, k, weight);
+                cell.sum += sample.point * weight;
+                cell.cluster.add(&sample, weight);
             }
         }
         for cell in &self.cells {
@@ -272,11 +228,11 @@ impl Modes {
         }
         let normal = pose.rotation * normal.normalize();
         Mode {
-            link,
+            link: LinkIndex::new(link),
             point: pose.transform_point(&point),
-            force: normal * (-moments.force / moments.weight),
+            force: pose.rotation * (moments.force / moments.weight),
             normal,
-            stiffness: moments.stiffness / moments.weight,
+            stiffness: (moments.stiffness > 0.0).then(|| moments.stiffness / moments.weight),
             probability: moments.weight,
             spread,
         }
@@ -311,8 +267,8 @@ fn cell_of(point: &Vector3<f64>) -> [u64; 3] {
     [0, 1, 2].map(|k| ((point[k] * (1.0 / CELL)).clamp(-32_000.0, 32_000.0) + 32_768.0) as u64)
 }
 
-fn key(link: u32, [x, y, z]: &[u64; 3]) -> u64 {
-    u64::from(link) << 48 | x << 32 | y << 16 | z
+fn key(link: usize, [x, y, z]: &[u64; 3]) -> u64 {
+    (link as u64) << 48 | x << 32 | y << 16 | z
 }
 
 fn hash(key: u64) -> usize {

@@ -1,0 +1,66 @@
+//! The weighted particles, and memory for the next ones.
+
+use std::mem::size_of;
+
+use super::birth::{Births, PLACE};
+use super::columns::Columns;
+use crate::error::Result;
+use crate::posterior::memory::{filled, space};
+use crate::posterior::resampling::systematic;
+use crate::posterior::Clusters;
+
+/// Memory that one particle takes [bytes].
+const PARTICLE: usize = 2 * Columns::SIZE + Clusters::SIZE + PLACE + size_of::<f64>() + size_of::<u32>();
+
+/// All particles and their weights, which sum to one.
+#[derive(Debug, Clone)]
+pub(super) struct Cloud {
+    pub births: Births,
+    pub particles: Columns,
+    pub weights: Vec<f64>,
+    /// Which particle each is a copy of.
+    pub parents: Vec<u32>,
+    spare: Columns,
+}
+
+impl Cloud {
+    /// Whether there is memory for so many particles and all that goes with them, before any of it is filled.
+    ///
+    /// # Errors
+    /// [`Error::Memory`](crate::Error::Memory) where there is not.
+    pub fn check_memory(count: usize) -> Result<()> {
+        space::<[u8; PARTICLE]>(count).map(drop)
+    }
+
+    /// As many as told, not born yet.
+    pub fn new(births: Births, count: usize) -> Result<Self> {
+        Ok(Cloud {
+            births,
+            particles: Columns::new(count)?,
+            weights: filled(1.0 / count as f64, count)?,
+            parents: filled(0, count)?,
+            spare: Columns::new(count)?,
+        })
+    }
+
+    /// Makes all particles as they were at the start.
+    pub fn clear(&mut self) {
+        self.particles.clear();
+        self.level();
+    }
+
+    /// Gives all particles the same weight.
+    pub fn level(&mut self) {
+        self.weights.fill(1.0 / self.particles.len() as f64);
+    }
+
+    /// Replaces the particles by so many copies, drawn by their weights with an offset in [0, 1); what is behind them is of
+    /// no use.
+    pub fn copy(&mut self, kept: usize, offset: f64) {
+        systematic(&self.weights, offset, &mut self.parents[..kept]);
+        self.parents[kept..].fill(0);
+        self.spare.gather(&self.particles, &self.parents);
+        std::mem::swap(&mut self.particles, &mut self.spare);
+        self.particles.log_weight[..kept].fill(0.0);
+    }
+}

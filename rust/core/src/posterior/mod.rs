@@ -1,0 +1,15 @@
+//! Posteriors over contacts, whatever their samples come from: modes, estimates, resampling.
+
+mod clusters;
+mod contact_sample;
+mod estimate;
+pub(crate) mod memory;
+mod mode;
+mod moments;
+pub(crate) mod parallel;
+pub(crate) mod resampling;
+
+pub(crate) use clusters::{Clusters, MOST_MODES};
+pub(crate) use contact_sample::{ContactSample, ContactSamples};
+pub use estimate::ContactEstimate;
+pub use mode::Mode;
