@@ -3,8 +3,7 @@
 use super::found::{Entry, Scene};
 use super::line::{best_first, LineCast};
 use super::result::Candidate;
-use super::rows::TorqueRows;
-use super::several::SILENT;
+use super::rows::{TorqueRows, SILENT};
 use super::wrench::WrenchEstimate;
 
 /// Hits of one line that are looked at.

@@ -25,6 +25,7 @@ mod tips;
 mod together;
 mod work;
 mod wrench;
+mod wrench_rows;
 
 pub use isolator::ContactIsolator;
 pub use options::IsolatorOptions;

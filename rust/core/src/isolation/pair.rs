@@ -6,8 +6,9 @@
 use nalgebra::{Matrix6, SMatrix, Vector6};
 
 use super::region::Region;
-use super::rows::{TorqueRows, WrenchRows};
+use super::rows::TorqueRows;
 use super::wrench::{full_rank_inverse, WrenchEstimate, RANK_TOLERANCE, SVD_ITERATIONS};
+use super::wrench_rows::WrenchRows;
 use crate::robot::Robot;
 
 type Matrix6x12 = SMatrix<f64, 6, 12>;

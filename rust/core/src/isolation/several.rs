@@ -9,18 +9,18 @@ use super::caster::Caster;
 use super::found::{Entry, Found, Scene, Solution};
 use super::open_part::{close, close_near};
 use super::pair::{estimate_pair, Open, PairEstimate};
-use super::rows::{TorqueRows, WrenchRows};
+use super::rows::{TorqueRows, SILENT};
 use super::stacked::Stacked;
 use super::surface_search::{steepness, SurfaceSearch, PAIRS, STARTS};
 use super::tips::TipSearch;
 use super::work::Work;
 use super::wrench::WrenchEstimate;
+use super::wrench_rows::WrenchRows;
+use crate::math::least_squares::exceeds;
 use crate::robot::{Robot, WORLD};
 
 /// What rounding leaves of an exact solution [tolerances].
 const EXACT: f64 = 1e-6;
-/// A joint that feels less than this feels nothing, if the torques are exact [tolerances].
-pub(super) const SILENT: f64 = 1e-5;
 /// Root mean square of what a good solution leaves under noise [tolerances].
 const GOOD: f64 = 1.0;
 /// Misfit of a solution between samples of the surfaces, which is not exact.
@@ -331,11 +331,6 @@ impl SeveralContacts {
             self.solutions.truncate(SOLUTIONS);
         }
     }
-}
-
-/// Above the limit, or not a number.
-pub(super) fn exceeds(misfit: f64, limit: f64) -> bool {
-    misfit.is_nan() || misfit > limit
 }
 
 /// Whether all joints behind `before` on the way to `tip` feel what the total wrench of the joints up to there causes.

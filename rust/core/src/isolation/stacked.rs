@@ -4,10 +4,10 @@
 use nalgebra::{Matrix6, Vector3, Vector6};
 
 use super::found::Scene;
-use super::rows::{Root, TorqueRows, LEVER};
-use super::several::exceeds;
+use super::rows::{Root, TorqueRows};
 use super::wrench::{WrenchEstimate, RANK_TOLERANCE};
-use crate::math::least_squares::LeastSquares;
+use super::wrench_rows::LEVER;
+use crate::math::least_squares::{exceeds, LeastSquares};
 use crate::robot::Robot;
 use crate::spatial::vector::{split, stack};
 

@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, SMatrix, Vector3};
 use super::found::Scene;
 use super::pair::{Open, PairEstimate};
 use super::result::Candidate;
-use super::rows::LEVER;
+use super::wrench_rows::LEVER;
 use crate::robot::{LinkIndex, Robot};
 use crate::surface::SurfacePoint;
 

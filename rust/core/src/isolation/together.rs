@@ -2,7 +2,8 @@
 
 use super::found::{Found, Scene};
 use super::rows::TorqueRows;
-use super::several::{exceeds, SeveralContacts};
+use super::several::SeveralContacts;
+use crate::math::least_squares::exceeds;
 
 /// Rounds until the contact links stand still; ten, as in Vorndamme 2017.
 const ROUNDS: usize = 10;

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
 
-use super::rows::{WrenchRows, LEVER};
+use super::wrench_rows::{WrenchRows, LEVER};
 use crate::robot::jacobian::for_each_column;
 use crate::robot::{Kinematics, Robot};
 use crate::spatial::vector::{split, stack};

@@ -163,6 +163,11 @@ impl LeastSquares {
     }
 }
 
+/// Whether a misfit is above the limit, or not a number.
+pub(crate) fn exceeds(misfit: f64, limit: f64) -> bool {
+    misfit.is_nan() || misfit > limit
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,39 +1,12 @@
 //! Configurations, velocities and torques: what a call's arrays must look like.
 
 use super::description::JointKind;
+use super::numbers::check_vector;
 use super::robot::Robot;
 use crate::error::{Error, Result};
 
 /// Unit quaternions and (cos, sin) pairs may be off by this much (squared norm); they are normalised.
 const NORM_TOLERANCE: f64 = 1e-3;
-
-/// Arguments must be smaller: products of a few such numbers stay finite.
-pub const LARGEST: f64 = 1e60;
-
-/// Checks that `values` has `length` finite entries of a size that can be computed with.
-#[inline]
-pub(crate) fn check_vector(argument: &'static str, values: &[f64], length: usize) -> Result<()> {
-    if values.len() != length {
-        return Err(wrong_length(argument, values.len(), length));
-    }
-    if values.iter().all(|x| x.abs() < LARGEST) {
-        Ok(())
-    } else {
-        Err(not_finite(argument, values))
-    }
-}
-
-#[cold]
-fn wrong_length(argument: &'static str, found: usize, wanted: usize) -> Error {
-    Error::input(argument, format!("expected {wanted} numbers, got {found}"))
-}
-
-#[cold]
-fn not_finite(argument: &'static str, values: &[f64]) -> Error {
-    let index = values.iter().position(|x| x.is_nan() || x.abs() >= LARGEST).unwrap_or(0);
-    let value = values[index];
-    Error::input(argument, format!("entry {index} is {value}; all must be finite and below {LARGEST:e}"))
-}
 
 impl Robot {
     /// The neutral configuration: joints at zero, base at the origin.

@@ -10,14 +10,15 @@ pub(crate) mod jacobian;
 pub(crate) mod joint_axis;
 mod kinematics;
 mod link;
+mod numbers;
 #[allow(clippy::module_inception)] // the room is called after what is in it
 mod robot;
 
-pub use configuration::LARGEST;
 pub use description::{JointDescription, JointKind, LinkDescription, RobotDescription};
 pub use dynamics::{ForwardDynamics, MomentumPass};
 pub use ids::{BodyIndex, LinkIndex};
 pub use kinematics::{BodyState, Kinematics};
 pub use link::Link;
+pub use numbers::LARGEST;
 pub use robot::Robot;
 pub(crate) use robot::WORLD;

@@ -6,10 +6,10 @@ use std::ops::Index;
 use nalgebra::{Matrix3, Vector3};
 
 use super::ancestry::Ancestry;
-use super::configuration::LARGEST;
 use super::description::{JointDescription, JointKind, RobotDescription};
 use super::ids::LinkIndex;
 use super::link::{check_link_tree, Link};
+use super::numbers::LARGEST;
 use crate::error::{Error, Result};
 use crate::spatial::Pose;
 use crate::surface::Surface;

@@ -9,53 +9,64 @@ use super::sample::Sampler;
 use super::Surface;
 use crate::{Error, Result};
 
-pub(super) fn surface(parts: Vec<Part>) -> Result<(Surface, Vec<String>)> {
-    if parts.is_empty() {
-        return Err(Error::geometry("a surface needs at least one part"));
-    }
-    let several = parts.len() > 1;
-    let mut remarks = Vec::new();
-    let mut solids = Vec::with_capacity(parts.len());
-    let mut vertices: Vec<Vector3<f64>> = Vec::new();
-    let mut triangles: Vec<[u32; 3]> = Vec::new();
-    for (index, part) in parts.into_iter().enumerate() {
-        let mut own = Vec::new();
-        let solid = solid(part, triangles.len(), &mut own).map_err(|error| {
-            if several {
-                error.within(&format!("part {index}"))
-            } else {
-                error
-            }
-        })?;
-        remarks.extend(own.into_iter().map(
-            |what| {
-                if several {
-                    format!("part {index}: {what}")
-                } else {
-                    what
-                }
-            },
-        ));
-        let (own_vertices, own_triangles) = match &solid {
-            Solid::Mesh { mesh, .. } => (mesh.vertices.clone(), mesh.triangles.clone()),
-            Solid::Exact(placed) => placed.tessellate(),
-        };
-        let first = vertices.len();
-        for (what, count) in
-            [("vertices", first + own_vertices.len()), ("triangles", triangles.len() + own_triangles.len())]
-        {
-            if count > u32::MAX as usize {
-                return Err(Error::geometry(format!("{count} {what} are too many")));
-            }
+impl Surface {
+    /// Makes the surface of the given parts, and says in sentences what was odd about them and what was done.
+    ///
+    /// Meshes are repaired: duplicate vertices merged, degenerate and duplicate triangles removed, winding made
+    /// consistent and outward.
+    ///
+    /// # Errors
+    /// [`Error::Geometry`](crate::Error::geometry) if there are no parts, a number is not finite, a size is not
+    /// positive, a mesh is empty, has an index out of range, or has nothing left after the repair.
+    pub fn new(parts: Vec<Part>) -> Result<(Surface, Vec<String>)> {
+        if parts.is_empty() {
+            return Err(Error::geometry("a surface needs at least one part"));
         }
-        vertices.extend(own_vertices);
-        triangles.extend(own_triangles.iter().map(|t| t.map(|v| v + first as u32)));
-        solids.push(solid);
+        let several = parts.len() > 1;
+        let mut remarks = Vec::new();
+        let mut solids = Vec::with_capacity(parts.len());
+        let mut vertices: Vec<Vector3<f64>> = Vec::new();
+        let mut triangles: Vec<[u32; 3]> = Vec::new();
+        for (index, part) in parts.into_iter().enumerate() {
+            let mut own = Vec::new();
+            let solid = solid(part, triangles.len(), &mut own).map_err(|error| {
+                if several {
+                    error.within(&format!("part {index}"))
+                } else {
+                    error
+                }
+            })?;
+            remarks.extend(own.into_iter().map(
+                |what| {
+                    if several {
+                        format!("part {index}: {what}")
+                    } else {
+                        what
+                    }
+                },
+            ));
+            let (own_vertices, own_triangles) = match &solid {
+                Solid::Mesh { mesh, .. } => (mesh.vertices.clone(), mesh.triangles.clone()),
+                Solid::Exact(placed) => placed.tessellate(),
+            };
+            let first = vertices.len();
+            for (what, count) in [
+                ("vertices", first + own_vertices.len()),
+                ("triangles", triangles.len() + own_triangles.len()),
+            ] {
+                if count > u32::MAX as usize {
+                    return Err(Error::geometry(format!("{count} {what} are too many")));
+                }
+            }
+            vertices.extend(own_vertices);
+            triangles.extend(own_triangles.iter().map(|t| t.map(|v| v + first as u32)));
+            solids.push(solid);
+        }
+        let (center, radius) = bounding_sphere(&solids);
+        let sampler = Sampler::new(&solids, radius + center.norm());
+        let vertices = vertices.into_iter().map(Into::into).collect();
+        Ok((Surface { solids, vertices, triangles, sampler, center, radius }, remarks))
     }
-    let (center, radius) = bounding_sphere(&solids);
-    let sampler = Sampler::new(&solids, radius + center.norm());
-    let vertices = vertices.into_iter().map(Into::into).collect();
-    Ok((Surface { solids, vertices, triangles, sampler, center, radius }, remarks))
 }
 
 fn solid(part: Part, first: usize, remarks: &mut Vec<String>) -> Result<Solid> {

@@ -3,6 +3,7 @@
 //! A surface is the union of parts. Meshes are repaired when the surface is made and searched through a tree;
 //! boxes, cylinders, spheres and capsules are exact. Everything is in the link's frame, in metres, and immutable.
 
+mod answers;
 mod build;
 pub(crate) mod mesh;
 mod part;
@@ -13,94 +14,14 @@ mod sample;
 #[cfg(test)]
 mod tests;
 
+pub use answers::{ClosestPoint, RayHit, SurfacePoint};
 pub use part::{Geometry, Part};
 
 use nalgebra::Vector3;
 
-use crate::Result;
 use part::Solid;
 use sample::Sampler;
 pub use sample::Sampling;
-
-/// The point of a surface nearest to a query.
-///
-/// ```
-/// use contactsense::robot::Robot;
-/// use nalgebra::Vector3;
-///
-/// let robot = Robot::example_arm();
-/// let surface = robot.links()[0].surface.as_ref().expect("every link of this arm has one");
-/// // A capsule of radius 0.05 m around z.
-/// let found = surface.closest_point(&Vector3::new(0.25, 0.0, 0.15));
-/// assert!((found.distance - 0.2).abs() < 1e-12 && (found.point.x - 0.05).abs() < 1e-12);
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct ClosestPoint {
-    /// The nearest point (m).
-    pub point: Vector3<f64>,
-    /// Outward unit normal of the face that holds `point`; on an edge, of one of its faces.
-    pub normal: Vector3<f64>,
-    /// Euclidean distance from the query, never negative (m).
-    pub distance: f64,
-    /// Index into [`Surface::triangles`]; none on an exact primitive.
-    pub triangle: Option<u32>,
-}
-
-/// One crossing of a line with a surface.
-///
-/// ```
-/// use contactsense::robot::Robot;
-/// use nalgebra::Vector3;
-///
-/// let robot = Robot::example_arm();
-/// let surface = robot.links()[0].surface.as_ref().expect("every link of this arm has one");
-/// let mut hits = Vec::with_capacity(8);
-/// let all = surface.cast_line_into(&Vector3::new(1.0, 0.0, 0.15), &-Vector3::x(), 0.0, &mut hits);
-/// assert!(all && hits.len() == 2);
-/// assert!(hits[0].entering && (hits[0].distance - 0.95).abs() < 1e-12);
-/// assert!(!hits[1].entering && (hits[1].distance - 1.05).abs() < 1e-12);
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct RayHit {
-    /// Where along the line, from its origin (m); negative behind it.
-    pub distance: f64,
-    /// `origin + distance * direction` (m).
-    pub point: Vector3<f64>,
-    /// Outward unit normal.
-    pub normal: Vector3<f64>,
-    /// Index into [`Surface::triangles`]; none on an exact primitive.
-    pub triangle: Option<u32>,
-    /// Index of the part that was hit.
-    pub part: u32,
-    /// The line goes into the part here; otherwise it comes out.
-    pub entering: bool,
-    hidden: bool,
-}
-
-/// One sample of a surface.
-///
-/// ```
-/// use contactsense::robot::Robot;
-///
-/// let robot = Robot::example_arm();
-/// let surface = robot.links()[0].surface.as_ref().expect("every link of this arm has one");
-/// for sample in surface.sample(100, 7) {
-///     assert!(surface.closest_point(&sample.point).distance < 1e-12);
-///     assert!((sample.normal.norm() - 1.0).abs() < 1e-12);
-/// }
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct SurfacePoint {
-    /// The sampled point (m).
-    pub point: Vector3<f64>,
-    /// Outward unit normal.
-    pub normal: Vector3<f64>,
-    /// Index into [`Surface::triangles`]; none on an exact primitive.
-    pub triangle: Option<u32>,
-}
 
 /// The surface of one link.
 ///
@@ -134,18 +55,6 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Makes the surface of the given parts, and says in sentences what was odd about them and what was done.
-    ///
-    /// Meshes are repaired: duplicate vertices merged, degenerate and duplicate triangles removed, winding made
-    /// consistent and outward.
-    ///
-    /// # Errors
-    /// [`Error::Geometry`](crate::Error::geometry) if there are no parts, a number is not finite, a size is not
-    /// positive, a mesh is empty, has an index out of range, or has nothing left after the repair.
-    pub fn new(parts: Vec<Part>) -> Result<(Surface, Vec<String>)> {
-        build::surface(parts)
-    }
-
     /// Vertices of all parts (m); those of a primitive belong to a tessellation for display.
     pub fn vertices(&self) -> &[[f64; 3]] {
         &self.vertices
@@ -245,7 +154,7 @@ impl Surface {
         t_min: f64,
         hits: &mut Vec<RayHit>,
     ) -> bool {
-        query::rays::cast(&self.solids, (&self.center, self.radius), origin, direction, t_min, hits)
+        query::cast::cast(&self.solids, (&self.center, self.radius), origin, direction, t_min, hits)
     }
 
     /// `n` points, uniform by area over what is exposed: points strictly inside another closed part, or on a face

@@ -2,9 +2,9 @@
 
 use nalgebra::Vector3;
 
+use super::answers::ClosestPoint;
 use super::mesh::Mesh;
 use super::primitive::{Placed, Primitive};
-use super::ClosestPoint;
 use crate::spatial::Pose;
 use crate::{Error, Result};
 

@@ -2,10 +2,11 @@
 
 use nalgebra::Vector3;
 
+use super::answers::{ClosestPoint, SurfacePoint};
 use super::mesh::Mesh;
 use super::part::Solid;
 use super::primitive::Placed;
-use super::{ClosestPoint, SurfacePoint};
+
 use crate::math::random::Stream;
 
 /// Attempts per point asked for, before giving up on a surface that is almost all hidden.

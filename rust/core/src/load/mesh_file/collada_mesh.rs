@@ -6,7 +6,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use roxmltree::{Node, NodeId};
 
-use super::collada::{child, Reader, Result};
+use super::collada_reader::{child, Reader, Result};
 use super::soup::Soup;
 
 /// Most numbers per corner: a vertex, a normal, and a few of texture and colour.

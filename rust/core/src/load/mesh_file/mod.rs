@@ -5,6 +5,7 @@
 
 mod collada;
 mod collada_mesh;
+mod collada_reader;
 mod obj;
 mod polygon;
 mod soup;

@@ -92,7 +92,7 @@ fn kind(joint: &urdf_rs::Joint) -> Result<Option<JointKind>> {
             "joint '{}' is {:?}; supported: {}",
             joint.name,
             joint.joint_type,
-            super::guard::SUPPORTED_JOINTS
+            super::guard::joint::SUPPORTED_JOINTS
         ))
         .of(&format!("joint '{}'", joint.name))),
     }

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, SymmetricEigen};
 
 use super::build::tensor;
-use super::name_list;
+use super::names::name_list;
 use super::tree::Tree;
 use crate::error::{Error, Result};
 use crate::robot::description::RobotDescription;

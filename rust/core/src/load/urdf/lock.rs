@@ -2,7 +2,7 @@
 
 use urdf_rs::JointType;
 
-use super::name_list;
+use super::names::name_list;
 use super::tree::Tree;
 use crate::error::{Error, Result};
 

@@ -2,7 +2,7 @@
 
 use urdf_rs::{Joint, JointType};
 
-use super::name_list;
+use super::names::name_list;
 use super::tree::Tree;
 
 /// Warnings that name the joints and links concerned and say what is done about them.

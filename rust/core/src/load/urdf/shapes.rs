@@ -4,7 +4,7 @@ use urdf_rs::{Geometry as Shape, Link};
 
 use super::build::pose;
 use super::meshes::MeshFinder;
-use super::UrdfGeometry;
+use super::options::UrdfGeometry;
 use crate::error::Result;
 use crate::load::load_mesh;
 use crate::surface::{Geometry, Part};

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, SymmetricEigen, Vector3};
 
 use super::inertia::NO_MOMENT;
-use super::name_list;
+use super::names::name_list;
 use crate::error::{Error, Result};
 use crate::robot::description::{JointKind, RobotDescription};
 use crate::robot::Robot;

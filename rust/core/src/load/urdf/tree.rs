@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use urdf_rs::{Joint, JointType};
 
 use super::guard::Checked;
-use super::name_list;
+use super::names::name_list;
 use crate::error::{Error, Result};
 
 /// The joint that a floating base adds.

@@ -2,13 +2,13 @@
 
 pub(super) mod bvh;
 pub(crate) mod bvh4;
+pub(crate) mod neighbours;
 pub(crate) mod repair;
 
 use nalgebra::Vector3;
 
 use self::bvh4::{Child, Tree};
-use super::query::descent::Neighbours;
-use super::ClosestPoint;
+use self::neighbours::Neighbours;
 use crate::{Error, Result};
 
 #[derive(Debug, Clone)]
@@ -44,27 +44,6 @@ impl Mesh {
         let corners = order.iter().map(|&id| all[id as usize]).collect();
         let neighbours = Neighbours::new(&vertices, &triangles);
         Ok(Mesh { vertices, triangles, normals, corners, order, tree, neighbours, closed: repaired.closed })
-    }
-
-    /// Whether `p` lies inside, by more than `tolerance`. The mesh must be closed.
-    pub fn contains(&self, p: &Vector3<f64>, tolerance: f64) -> bool {
-        if (p - self.tree.center).norm() > self.tree.radius {
-            return false;
-        }
-        // Any direction would do; this one is in no plane that CAD files favour.
-        let direction = Vector3::new(0.537_725_1, 0.642_913_7, 0.545_305_9).normalize();
-        let mut depth = 0;
-        self.cross(p, &direction, 0.0, &mut |_, _, entering| {
-            depth += if entering { -1 } else { 1 };
-            true
-        });
-        if depth <= 0 {
-            return false;
-        }
-        let mut nearest =
-            ClosestPoint { point: *p, normal: Vector3::zeros(), distance: f64::INFINITY, triangle: None };
-        self.closest_point(p, None, 0, &mut nearest);
-        nearest.distance > tolerance
     }
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Crossing, Nearest, Tessellation};
+use super::elements::{Crossing, Nearest, Tessellation};
 
 fn face(axis: usize, sign: f64) -> Vector3<f64> {
     let mut normal = Vector3::zeros();

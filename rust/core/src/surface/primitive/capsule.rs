@@ -4,7 +4,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::Vector3;
 
-use super::{cylinder, direction_or, end, sphere, Crossing, Nearest, Tessellation, SEGMENTS};
+use super::elements::{direction_or, end, Crossing, Nearest, Tessellation, SEGMENTS};
+use super::{cylinder, sphere};
 
 pub(super) fn closest(radius: f64, half_length: f64, p: &Vector3<f64>) -> Nearest {
     let axis = Vector3::new(0.0, 0.0, p.z.clamp(-half_length, half_length));

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{Vector2, Vector3};
 
-use super::{direction_or, end, Crossing, Nearest, Tessellation, SEGMENTS};
+use super::elements::{direction_or, end, Crossing, Nearest, Tessellation, SEGMENTS};
 
 pub(super) fn closest(radius: f64, half_length: f64, p: &Vector3<f64>) -> Nearest {
     let radial = Vector3::new(p.x, p.y, 0.0);

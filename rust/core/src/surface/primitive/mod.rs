@@ -5,17 +5,16 @@
 mod r#box;
 mod capsule;
 mod cylinder;
+mod elements;
 mod sphere;
 
 use std::f64::consts::PI;
 
 use nalgebra::Vector3;
 
-use super::{ClosestPoint, RayHit, SurfacePoint};
+use self::elements::{Crossing, Nearest, Tessellation};
+use super::answers::{ClosestPoint, RayHit, SurfacePoint};
 use crate::spatial::Pose;
-
-/// Segments of a full circle in a tessellation.
-const SEGMENTS: usize = 48;
 
 /// A primitive in its own frame (m).
 #[derive(Debug, Clone, Copy)]
@@ -25,24 +24,6 @@ pub(super) enum Primitive {
     Sphere { radius: f64 },
     Capsule { radius: f64, half_length: f64 },
 }
-
-/// The nearest point of a primitive.
-pub(super) struct Nearest {
-    pub point: Vector3<f64>,
-    pub normal: Vector3<f64>,
-    /// Negative inside.
-    pub signed_distance: f64,
-}
-
-/// Where a line goes in or comes out.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Crossing {
-    pub distance: f64,
-    pub normal: Vector3<f64>,
-}
-
-/// Triangles for display.
-pub(super) type Tessellation = (Vec<Vector3<f64>>, Vec<[u32; 3]>);
 
 impl Primitive {
     fn closest(&self, p: &Vector3<f64>) -> Nearest {
@@ -144,7 +125,6 @@ impl Placed {
         self.shape.closest(&self.pose.inverse_transform_point(p)).signed_distance < -tolerance
     }
 
-    /// Appends the crossings from `t_min` on; `false` if one did not fit.
     /// Calls `visit` for both crossings of a line, those from `t_min` on, until it returns `false`.
     pub fn cross(
         &self,
@@ -204,21 +184,4 @@ impl Placed {
         let half = self.pose.rotation.abs() * self.shape.half_extents();
         [self.pose.translation - half, self.pose.translation + half]
     }
-}
-
-/// The direction of `v`, or `otherwise` at zero.
-#[inline]
-fn direction_or(v: &Vector3<f64>, otherwise: Vector3<f64>) -> Vector3<f64> {
-    let norm = v.norm();
-    if norm > f64::MIN_POSITIVE {
-        v / norm
-    } else {
-        otherwise
-    }
-}
-
-/// `z` in [-half_length, half_length]'s sign as a unit vector.
-#[inline]
-fn end(z: f64) -> Vector3<f64> {
-    Vector3::new(0.0, 0.0, if z < 0.0 { -1.0 } else { 1.0 })
 }

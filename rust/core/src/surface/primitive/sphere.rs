@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector3;
 
-use super::{direction_or, Crossing, Nearest};
+use super::elements::{direction_or, Crossing, Nearest};
 
 pub(super) fn closest(radius: f64, p: &Vector3<f64>) -> Nearest {
     let normal = direction_or(p, Vector3::z());

@@ -3,9 +3,9 @@
 use nalgebra::Vector3;
 
 use super::triangle;
+use crate::surface::answers::ClosestPoint;
 use crate::surface::mesh::bvh4::{Child, Node, STACK};
 use crate::surface::mesh::Mesh;
-use crate::surface::ClosestPoint;
 
 /// Share by which single-precision rounding can overstate a squared distance, with room to spare.
 const SHRINK: f32 = 1.0 - 4e-6;

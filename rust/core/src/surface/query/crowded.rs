@@ -2,8 +2,8 @@
 
 use super::rays::{alternate, drop_hidden, Ray};
 use super::union;
+use crate::surface::answers::RayHit;
 use crate::surface::part::Solid;
-use crate::surface::RayHit;
 
 /// Appends the nearest crossings, as many as fit, those inside other closed parts dropped; `size` is the surface's.
 ///

@@ -1,9 +1,11 @@
 //! What is asked of a surface: closest points, all hits of a line.
 
+pub(crate) mod cast;
 pub(crate) mod closest;
 mod crowded;
-pub(crate) mod descent;
+mod descent;
+mod inside;
 mod line;
-pub(crate) mod rays;
+mod rays;
 pub(crate) mod triangle;
 mod union;

@@ -1,66 +1,20 @@
-//! All crossings of a line with the parts of a surface.
+//! The crossings of a line with one part, and their order.
 
 use std::cmp::Ordering;
 
 use nalgebra::Vector3;
 
 use super::line::Line;
-use super::{crowded, union};
+use crate::surface::answers::RayHit;
 use crate::surface::mesh::bvh4::{Child, Node, STACK};
 use crate::surface::mesh::Mesh;
 use crate::surface::part::Solid;
-use crate::surface::RayHit;
 
 /// Distances nearer than this share of the mesh's radius can be in either order.
 const TIE: f64 = 1e-12;
 
-/// Crossings of a line with all parts, those inside other closed parts dropped; `false` if some did not fit, and only
-/// the nearest are there.
-pub(crate) fn cast(
-    solids: &[Solid],
-    (center, radius): (&Vector3<f64>, f64),
-    origin: &Vector3<f64>,
-    direction: &Vector3<f64>,
-    t_min: f64,
-    hits: &mut Vec<RayHit>,
-) -> bool {
-    let finite = origin.iter().chain(direction.iter()).all(|x| x.is_finite());
-    if !finite || direction.norm_squared() == 0.0 || t_min.is_nan() {
-        return true;
-    }
-    let start = hits.len();
-    let ray = Ray { origin, direction, t_min };
-    for (part, solid) in solids.iter().enumerate() {
-        let own = hits.len();
-        let mut fitted = true;
-        ray.cross(solid, part as u32, &mut |hit| {
-            fitted = hits.len() < hits.capacity();
-            if fitted {
-                hits.push(hit);
-            }
-            fitted
-        });
-        if !fitted {
-            hits.truncate(start);
-            crowded::nearest(solids, &ray, radius + center.norm(), hits);
-            return false;
-        }
-        if let Solid::Mesh { mesh, .. } = solid {
-            let out = hits[own..].iter().filter(|hit| !hit.entering).count();
-            let starts_inside = 2 * out > hits.len() - own;
-            sort(&mut hits[own..]);
-            alternate(&mut hits[own..], mesh, starts_inside);
-        }
-    }
-    if solids.len() > 1 && hits.len() > start + 1 {
-        union::hide_inside(solids, &mut hits[start..], radius + center.norm());
-        drop_hidden(start, hits);
-    }
-    true
-}
-
 /// Drops the hits from `start` on that are hidden, and sorts the others.
-pub(crate) fn drop_hidden(start: usize, hits: &mut Vec<RayHit>) {
+pub(super) fn drop_hidden(start: usize, hits: &mut Vec<RayHit>) {
     let mut kept = start;
     for i in start..hits.len() {
         if !hits[i].hidden {
@@ -73,7 +27,7 @@ pub(crate) fn drop_hidden(start: usize, hits: &mut Vec<RayHit>) {
 }
 
 /// Sorts by distance without allocating; equal distances keep their order in short lists, the usual case.
-fn sort(hits: &mut [RayHit]) {
+pub(super) fn sort(hits: &mut [RayHit]) {
     if hits.len() > 64 {
         hits.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance));
         return;
@@ -88,7 +42,7 @@ fn sort(hits: &mut [RayHit]) {
 }
 
 /// Puts hits of a mesh at the same distance, to rounding, in an order in which the line goes in and out in turn.
-pub(crate) fn alternate(hits: &mut [RayHit], mesh: &Mesh, starts_inside: bool) {
+pub(super) fn alternate(hits: &mut [RayHit], mesh: &Mesh, starts_inside: bool) {
     if !mesh.closed || hits.len() < 2 {
         return;
     }

@@ -1,7 +1,7 @@
 //! Which crossings of a line lie inside another closed part.
 
+use crate::surface::answers::RayHit;
 use crate::surface::part::Solid;
-use crate::surface::RayHit;
 
 /// Faces nearer to each other than this share of the surface's size touch.
 const TIE: f64 = 1e-9;

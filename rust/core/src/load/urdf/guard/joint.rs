@@ -2,10 +2,14 @@
 
 use roxmltree::Node;
 
+use super::clean::{child, Clean};
 use super::writer::row;
-use super::{child, Clean, SUPPORTED_JOINTS};
 use crate::error::{Error, Result};
 use crate::load::urdf::numbers::{attribute, parse, LARGEST};
+
+/// Types that are read.
+pub(crate) const SUPPORTED_JOINTS: &str =
+    "revolute, continuous, prismatic, fixed, and a free flyer as the root";
 
 impl Clean {
     pub(super) fn joint(&mut self, node: Node<'_, '_>) -> Result<()> {

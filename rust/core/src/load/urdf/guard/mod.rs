@@ -4,7 +4,9 @@
 //! reads "nan", refuses a whole file for an odd material, names no element in its messages, and overflows the stack
 //! on deeply nested elements.
 
-mod joint;
+mod clean;
+pub(super) mod joint;
+mod link;
 mod shape;
 mod writer;
 
@@ -13,14 +15,12 @@ use std::path::Path;
 
 use roxmltree::{Document, Node};
 
-use super::guard::writer::{row, Writer};
-use super::numbers::{attribute, parse, Kind, LARGEST};
-use super::{text, UrdfGeometry};
+use self::clean::{child, children, element, is, Clean};
+use self::writer::Writer;
+use super::options::UrdfGeometry;
+use super::text;
 use crate::error::{Error, Result};
 use crate::load::problem::Problem;
-
-pub(super) const SUPPORTED_JOINTS: &str =
-    "revolute, continuous, prismatic, fixed, and a free flyer as the root";
 
 /// A URDF whose every number and name was checked.
 pub(super) struct Checked {
@@ -82,87 +82,4 @@ fn check_names(root: Node<'_, '_>, robot: &urdf_rs::Robot) -> Result<()> {
         }
     }
     Ok(())
-}
-
-fn is(node: Node<'_, '_>, tag: &str) -> bool {
-    node.is_element() && node.tag_name().namespace().is_none() && node.tag_name().name() == tag
-}
-
-fn children<'a, 'i>(node: Node<'a, 'i>, tag: &'static str) -> impl Iterator<Item = Node<'a, 'i>> {
-    node.children().filter(move |child| is(*child, tag))
-}
-
-fn child<'a, 'i>(node: Node<'a, 'i>, tag: &'static str) -> Option<Node<'a, 'i>> {
-    children(node, tag).next()
-}
-
-/// A link or joint as messages name it.
-fn element(node: Node<'_, '_>) -> String {
-    format!("{} '{}'", node.tag_name().name(), node.attribute("name").unwrap_or_default())
-}
-
-/// The rewritten text.
-struct Clean {
-    xml: Writer,
-    role: UrdfGeometry,
-    without_inertial: HashSet<String>,
-    bad_shape: Option<Error>,
-}
-
-impl Clean {
-    fn link(&mut self, node: Node<'_, '_>) -> Result<()> {
-        let name = node.attribute("name").unwrap_or_default();
-        if name.is_empty() {
-            return Err(Error::model("a <link> has no name"));
-        }
-        self.xml.open("link", &[("name", name)]);
-        match child(node, "inertial") {
-            Some(inertial) => self.inertial(inertial, &format!("link '{name}'"))?,
-            None => {
-                self.without_inertial.insert(name.to_owned());
-            }
-        }
-        let tag = self.role.tag();
-        for shape in children(node, tag) {
-            let before = self.xml.text.len();
-            if let Err(error) = self.shape(shape, tag, &format!("link '{name}': <{tag}>")) {
-                self.xml.text.truncate(before);
-                self.bad_shape.get_or_insert(error.of(&element(node)));
-            }
-        }
-        self.xml.close("link");
-        Ok(())
-    }
-
-    fn inertial(&mut self, node: Node<'_, '_>, owner: &str) -> Result<()> {
-        let (Some(mass), Some(inertia)) = (child(node, "mass"), child(node, "inertia")) else {
-            return Err(Error::model(format!("{owner}: <inertial> needs <mass> and <inertia>")));
-        };
-        let keys = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
-        let mut moments = Vec::with_capacity(6);
-        for key in keys {
-            // Products of inertia may be left out; URDF's default is zero.
-            let default = if matches!(key, "ixx" | "iyy" | "izz") { None } else { Some(0.0) };
-            moments.push(row(&[attribute(inertia, key, owner, Error::model, default, LARGEST)?]));
-        }
-        let mass = row(&[attribute(mass, "value", owner, Error::model, None, LARGEST)?]);
-        self.xml.open("inertial", &[]);
-        self.origin(node, owner, Error::model)?;
-        self.xml.empty("mass", &[("value", &mass)]);
-        let moments: Vec<(&str, &str)> = keys.into_iter().zip(moments.iter().map(String::as_str)).collect();
-        self.xml.empty("inertia", &moments);
-        self.xml.close("inertial");
-        Ok(())
-    }
-
-    fn origin(&mut self, node: Node<'_, '_>, owner: &str, kind: Kind) -> Result<()> {
-        let Some(origin) = child(node, "origin") else { return Ok(()) };
-        let numbers = |key: &str| {
-            let text = origin.attribute(key).unwrap_or("0 0 0");
-            parse::<3>(text, &format!("{owner}: '{key}' of <origin>"), kind, LARGEST)
-        };
-        let (xyz, rpy) = (row(&numbers("xyz")?), row(&numbers("rpy")?));
-        self.xml.empty("origin", &[("xyz", &xyz), ("rpy", &rpy)]);
-        Ok(())
-    }
 }

@@ -2,8 +2,8 @@
 
 use roxmltree::Node;
 
+use super::clean::{child, Clean};
 use super::writer::row;
-use super::{child, Clean};
 use crate::error::{Error, Result};
 use crate::load::urdf::numbers::{attribute, parse, LARGEST};
 
