@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector6;
 
-use super::gate::{check_hold_time, check_threshold, check_wrench_threshold, is_over, Gate};
+use super::gate::{check_hold_time, check_threshold, check_wrench_threshold, Gate};
 use super::signal_tree::{Signal, SignalTree};
 use crate::error::Result;
 use crate::robot::{LinkIndex, Robot};
@@ -18,7 +18,7 @@ pub(crate) struct Detector {
     joints: Gate,
     sensors: Gate,
     wrench_threshold: Vec<Vector6<f64>>,
-    /// By sensor: its largest component, in thresholds.
+    /// By sensor: its largest component, in thresholds; zero where it is left out.
     wrench_size: Vec<f64>,
     is_known: Vec<bool>,
     tree: SignalTree,
@@ -57,17 +57,23 @@ impl Detector {
         })
     }
 
-    /// One tick of `dt` (s) with the external torque `(nv,)`, finite, and the external wrenches that the sensors see, none
-    /// where one is left out; empty without sensors. A sensor over its threshold says that the contact is behind it, one
-    /// under it that it is not.
-    pub fn update(&mut self, external_torque: &[f64], wrenches: &[Option<Vector6<f64>>], dt: f64) {
-        let before = self.collision;
+    /// Takes in the external wrenches of a tick, none where a sensor is left out; empty without sensors. A sensor over its
+    /// threshold says that the contact is behind it, one under it that it is not. Returns whether one is over.
+    pub fn sense(&mut self, wrenches: &[Option<Vector6<f64>>]) -> bool {
         for (sensor, wrench) in wrenches.iter().enumerate() {
-            self.wrench_size[sensor] = self.size(sensor, wrench);
+            let shares =
+                wrench.map_or(Vector6::zeros(), |it| it.abs().component_div(&self.wrench_threshold[sensor]));
+            self.wrench_size[sensor] = shares.iter().copied().fold(0.0, f64::max);
             self.is_known[sensor] = wrench.is_some();
         }
+        self.sensors.any_over(self.wrench_size.iter().copied())
+    }
+
+    /// The rest of the tick of `dt` [s] with the external torque `(nv,)`, finite.
+    pub fn update(&mut self, external_torque: &[f64], dt: f64) {
+        let before = self.collision;
         let on_joints = self.joints.update(external_torque, dt);
-        let on_sensors = self.sensors.update(&self.wrench_size[..wrenches.len()], dt);
+        let on_sensors = self.sensors.update(&self.wrench_size, dt);
         self.collision = on_joints || on_sensors;
         self.onset = self.collision && !before;
         let Self { robot, tree, joints, sensors, is_known, links, .. } = self;
@@ -78,27 +84,15 @@ impl Detector {
         tree.region(over, |sensor| !is_known[sensor], links);
     }
 
-    /// A wrench's largest component, in thresholds; zero where the sensor is left out.
-    fn size(&self, sensor: usize, wrench: &Option<Vector6<f64>>) -> f64 {
-        let Some(wrench) = wrench else { return 0.0 };
-        wrench.abs().component_div(&self.wrench_threshold[sensor]).iter().copied().fold(0.0, f64::max)
+    /// Whether a torque `(nv,)` is over a threshold, whatever was before.
+    pub fn any_over(&self, torque: impl IntoIterator<Item = f64>) -> bool {
+        self.joints.any_over(torque)
     }
 
-    /// Whether a torque `(nv,)` or a wrench is over its threshold, whatever was before.
-    pub fn any_over(
-        &self,
-        torque: impl IntoIterator<Item = f64>,
-        wrenches: &[Option<Vector6<f64>>],
-    ) -> [bool; 2] {
-        let mut sizes = wrenches.iter().enumerate().map(|(sensor, wrench)| self.size(sensor, wrench));
-        [self.joints.any_over(torque), sizes.any(|size| is_over(size, 1.0))]
-    }
-
-    /// Forgets all signals.
+    /// Forgets all signals but what was sensed in this tick.
     pub fn reset(&mut self) {
         self.joints.reset();
         self.sensors.reset();
-        self.is_known.fill(true);
         self.links.clear();
         self.collision = false;
         self.onset = false;

@@ -36,12 +36,6 @@ pub(super) struct SignalTree {
 impl SignalTree {
     pub fn new(robot: &Robot, sensors: &SensorTree) -> Self {
         let links = robot.links();
-        let mut first_link = vec![None; robot.body_count()];
-        for (index, link) in links.iter().enumerate() {
-            if link.parent.is_none_or(|parent| links[parent].body != link.body) {
-                first_link[link.body].get_or_insert(index);
-            }
-        }
         // The signal that a link hangs behind.
         let signal_of = |link: usize| {
             let body = links[link].body;
@@ -52,7 +46,7 @@ impl SignalTree {
             }
         };
         let parent_of = |signal: Signal| match signal {
-            Signal::Joint { body } => match first_link[body].and_then(|link| links[link].parent) {
+            Signal::Joint { body } => match sensors.joint_link(body).and_then(|link| links[link].parent) {
                 Some(parent) => signal_of(parent),
                 None => Some(robot.parent_body(body))
                     .filter(|body| *body != WORLD)
@@ -86,8 +80,8 @@ impl SignalTree {
         Self { nodes, felt_behind: vec![false; count], in_region: vec![false; count] }
     }
 
-    /// Writes the region's links, farthest from the base first. `over` tells whether a signal is over its threshold, `passes` whether a sensor says
-    /// nothing, so that a region goes on behind it.
+    /// Writes the region's links, farthest from the base first. `over` tells whether a signal is over its threshold,
+    /// `passes` whether a sensor says nothing, so that a region goes on behind it.
     pub fn region(
         &mut self,
         over: impl Fn(Signal) -> bool,

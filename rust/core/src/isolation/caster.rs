@@ -51,12 +51,7 @@ impl Caster {
             return hit;
         }
         let robot = scene.robot;
-        let agrees = |joint: usize| {
-            robot.velocity_range(joint).all(|k| {
-                (wrench.torque_on(&rows.axes[k]) - rows.torque[k]).abs()
-                    <= limit.max(SILENT) * rows.tolerance[k]
-            })
-        };
+        let agrees = |joint: usize| rows.explains(robot, joint, wrench, limit.max(SILENT));
         let behind = |other: usize| {
             let mut chain = robot.chain(other).iter().skip_while(|joint| **joint != body).skip(1).peekable();
             chain.peek().is_some() && chain.all(|joint| scene.region.joints[*joint] && agrees(*joint))

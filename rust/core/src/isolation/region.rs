@@ -33,7 +33,7 @@ impl Region {
     fn set(&mut self, robot: &Robot, tree: &SensorTree, sensor: Option<usize>) {
         self.whole = tree.is_empty();
         for body in WORLD + 1..robot.body_count() {
-            self.joints[body] = in_use(tree, before_joint(robot, tree, body)) == sensor;
+            self.joints[body] = tree.before_joint(body) == sensor;
             self.feels[robot.velocity_range(body)].fill(self.joints[body]);
         }
         for (link, member) in self.links.iter_mut().enumerate() {
@@ -50,24 +50,6 @@ impl Region {
     pub fn links_of<'a>(&'a self, robot: &'a Robot, body: usize) -> impl Iterator<Item = LinkIndex> + 'a {
         robot.links_of_body(body).iter().copied().filter(|link| self.links[link.get()])
     }
-}
-
-/// The nearest sensor, in use or not, that the joint which moves a body lies behind.
-fn before_joint(robot: &Robot, tree: &SensorTree, mut body: usize) -> Option<usize> {
-    while body != WORLD {
-        let mut parents =
-            robot.links().iter().filter(|link| link.body == body).filter_map(|link| link.parent);
-        if let Some(parent) = parents.find(|parent| robot.links()[*parent].body != body) {
-            return tree.fixed_of_link(parent);
-        }
-        body = robot.parent_body(body);
-    }
-    None
-}
-
-/// The nearest sensor in use, from one towards the base.
-fn in_use(tree: &SensorTree, sensor: Option<usize>) -> Option<usize> {
-    sensor.and_then(|sensor| if tree.is_active(sensor) { Some(sensor) } else { tree.parent(sensor) })
 }
 
 /// The region of each sensor, and of what no sensor carries.

@@ -114,6 +114,13 @@ impl TorqueRows {
         joints.chain(root.map(|(threshold, tolerance)| threshold / tolerance)).fold(0.0, f64::max)
     }
 
+    /// Whether a joint feels what a wrench would cause, but for `limit` [tolerances].
+    #[inline]
+    pub fn explains(&self, robot: &Robot, joint: usize, wrench: &WrenchEstimate, limit: f64) -> bool {
+        let misfit = |k: usize| (wrench.torque_on(&self.axes[k]) - self.torque[k]).abs();
+        robot.velocity_range(joint).all(|k| misfit(k) <= limit * self.tolerance[k])
+    }
+
     /// Adds the rows of a joint.
     #[inline]
     pub fn push_joint(&self, robot: &Robot, joint: usize, rows: &mut WrenchRows) {

@@ -13,7 +13,7 @@ use crate::observer::WrenchObserver;
 use crate::robot::jacobian::jacobian_column;
 use crate::robot::Kinematics;
 use crate::sensor::{sensor_torque, SensorIndex};
-use crate::spatial::vector::{split, stack};
+use crate::spatial::vector::{moved, split, stack};
 use crate::torque::LEVEL;
 
 /// Moment along the force that rounding leaves [tolerances].
@@ -112,9 +112,8 @@ impl ContactIsolator {
         let mut limits = own.component_mul(own);
         for (other, wrench) in wrenches.iter().enumerate() {
             let Some(wrench) = wrench.filter(|_| tree.parent(other) == Some(sensor)) else { continue };
-            let (force, moment) = split(&wrench);
             let arm = tree.position(kinematics, other) - position;
-            value -= stack(&force, &(moment + arm.cross(&force)));
+            value -= moved(&wrench, &arm);
             squares += moved_squares(&wrench, &arm);
             limits += moved_squares(&self.wrench_threshold[other], &arm);
         }

@@ -98,13 +98,10 @@ impl SeveralContacts {
     pub fn solve_exactly(&mut self, scene: Scene, rows: &mut TorqueRows) -> bool {
         self.clear();
         self.peeled = 0;
-        let Scene { robot, .. } = scene;
         while self.found.len() < self.max_contacts {
-            let felt = |k: usize| rows.torque[k].abs() > SILENT * rows.tolerance[k];
-            let tips = self.tips.find(robot, |k| scene.region.feels[k] && felt(k));
-            let count = tips.len();
+            let tips = self.find_tips(scene, rows);
             let [first, second] = [0, 1].map(|i| tips.get(i).copied().unwrap_or(WORLD));
-            match count {
+            match tips.len() {
                 0 => {
                     self.verified = true;
                     return !self.found.is_empty();
@@ -114,7 +111,8 @@ impl SeveralContacts {
                         self.verified = true;
                         return true;
                     }
-                    let before = first_unexplained(scene, rows, first).map(|joint| robot.parent_body(joint));
+                    let before =
+                        first_unexplained(scene, rows, first).map(|joint| scene.robot.parent_body(joint));
                     if before.is_some_and(|before| self.solve_pair(scene, rows, [before, first], EXACT)) {
                         return true;
                     }
@@ -122,7 +120,7 @@ impl SeveralContacts {
                 2 if self.solve_pair(scene, rows, [second, first], EXACT) => return true,
                 _ => {}
             }
-            if !(0..count).any(|index| self.peel(scene, rows, index)) {
+            if !self.peel_one(scene, rows) {
                 self.bodies.clear();
                 self.bodies.extend(self.tips.tips().iter().take(self.max_contacts));
                 return self.solve_together(scene, rows, EXACT);
@@ -142,12 +140,22 @@ impl SeveralContacts {
     pub fn peel_all(&mut self, scene: Scene, rows: &mut TorqueRows) {
         self.clear();
         while self.found.len() < self.max_contacts {
-            let felt = |k: usize| rows.torque[k].abs() > SILENT * rows.tolerance[k];
-            let count = self.tips.find(scene.robot, |k| scene.region.feels[k] && felt(k)).len();
-            if !(0..count).any(|index| self.peel(scene, rows, index)) {
+            self.find_tips(scene, rows);
+            if !self.peel_one(scene, rows) {
                 break;
             }
         }
+    }
+
+    /// The last bodies that feel what is not explained yet.
+    fn find_tips(&mut self, scene: Scene, rows: &TorqueRows) -> &[usize] {
+        let felt = |k: usize| rows.torque[k].abs() > SILENT * rows.tolerance[k];
+        self.tips.find(scene.robot, |k| scene.region.feels[k] && felt(k))
+    }
+
+    /// Takes the first of the tips out whose own joints determine its force.
+    fn peel_one(&mut self, scene: Scene, rows: &mut TorqueRows) -> bool {
+        (0..self.tips.tips().len()).any(|index| self.peel(scene, rows, index))
     }
 
     /// Contacts that explain the torques within their tolerances. `tips` feel them.
@@ -191,12 +199,7 @@ impl SeveralContacts {
 
     /// The last contact: all that is left is one force.
     fn find_last(&mut self, scene: Scene, rows: &TorqueRows, tip: usize) -> bool {
-        let mut wrench_rows = WrenchRows::new();
-        rows.push_root(&mut wrench_rows);
-        for joint in scene.region.chain(scene.robot, tip) {
-            rows.push_joint(scene.robot, joint, &mut wrench_rows);
-        }
-        let wrench = WrenchEstimate::from_rows(wrench_rows);
+        let wrench = total_wrench(scene, rows, tip);
         let exact = wrench.rank == 6 && wrench.misfit() <= EXACT;
         let hit = if exact { self.caster.hit_behind(scene, rows, tip, &wrench, EXACT) } else { None };
         hit.map(|hit| self.found.push(Found::new(wrench, hit))).is_some()
@@ -333,19 +336,23 @@ impl SeveralContacts {
     }
 }
 
+/// The total wrench that the joints up to `body`, and a sensor, feel.
+fn total_wrench(scene: Scene, rows: &TorqueRows, body: usize) -> WrenchEstimate {
+    let mut wrench_rows = WrenchRows::new();
+    rows.push_root(&mut wrench_rows);
+    for joint in scene.region.chain(scene.robot, body) {
+        rows.push_joint(scene.robot, joint, &mut wrench_rows);
+    }
+    WrenchEstimate::from_rows(wrench_rows)
+}
+
 /// Whether all joints behind `before` on the way to `tip` feel what the total wrench of the joints up to there causes.
 fn rest_is_explained(scene: Scene, rows: &TorqueRows, before: usize, tip: usize) -> bool {
     let robot = scene.robot;
-    let mut wrench_rows = WrenchRows::new();
-    rows.push_root(&mut wrench_rows);
-    for joint in scene.region.chain(robot, before) {
-        rows.push_joint(robot, joint, &mut wrench_rows);
-    }
-    let total = WrenchEstimate::from_rows(wrench_rows);
-    let explained = |k: usize| (total.torque_on(&rows.axes[k]) - rows.torque[k]).abs() <= rows.tolerance[k];
+    let total = total_wrench(scene, rows, before);
     let behind = |joint: &usize| !robot.moves(*joint, before);
     let mut rest = scene.region.chain(robot, tip).filter(behind);
-    total.rank < 6 || rest.all(|joint| robot.velocity_range(joint).all(explained))
+    total.rank < 6 || rest.all(|joint| rows.explains(robot, joint, &total, 1.0))
 }
 
 /// The first joint on the way from the base to `tip` that contradicts the total wrench of the joints before it.
@@ -362,10 +369,7 @@ fn first_unexplained(scene: Scene, rows: &TorqueRows, tip: usize) -> Option<usiz
         match &total {
             None => rows.push_joint(robot, joint, &mut wrench_rows),
             Some(total) => {
-                let explained = |k: usize| {
-                    (total.torque_on(&rows.axes[k]) - rows.torque[k]).abs() <= SILENT * rows.tolerance[k]
-                };
-                if !robot.velocity_range(joint).all(explained) {
+                if !rows.explains(robot, joint, total, SILENT) {
                     return Some(joint);
                 }
             }

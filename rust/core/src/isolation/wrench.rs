@@ -5,6 +5,7 @@ use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
 use super::wrench_rows::{WrenchRows, LEVER};
 use crate::robot::jacobian::for_each_column;
 use crate::robot::{Kinematics, Robot};
+use crate::spatial::basis;
 use crate::spatial::vector::{split, stack};
 
 /// Singular values below this share of the largest count as zero.
@@ -127,8 +128,7 @@ impl WrenchEstimate {
         map.fixed_view_mut::<3, 3>(0, 3).copy_from(&across);
         let root = map * self.root * self.torque_deviation();
         let along = self.force / self.force.norm();
-        let apart = if along.x.abs() < 0.8 { Vector3::x() } else { Vector3::y() };
-        let first = along.cross(&apart).normalize();
+        let first = basis::across(&along);
         [first, along.cross(&first)].map(|direction| direction * root.tr_mul(&direction).norm())
     }
 

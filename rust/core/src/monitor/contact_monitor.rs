@@ -141,10 +141,10 @@ impl ContactMonitor {
             let collision_torque = self.report.collision_torque.iter_mut();
             collision_torque.zip(sensing.wanted_torque()).for_each(|(torque, wanted)| *torque -= wanted);
         }
-        let ready = self.remove_bias(length, !first && !step.is_gap());
+        let felt = self.detector.sense(self.sensing.as_ref().map_or(&[], Sensing::unwanted));
+        let ready = self.remove_bias(length, !first && !step.is_gap(), felt);
         if ready {
-            let unwanted = self.sensing.as_ref().map_or(&[][..], Sensing::unwanted);
-            self.detector.update(&self.report.collision_torque, unwanted, length);
+            self.detector.update(&self.report.collision_torque, length);
         }
         if self.detector.collision() {
             self.isolate();
@@ -188,8 +188,9 @@ impl ContactMonitor {
     }
 
     /// Subtracts the bias, which follows the collision torque while nothing touches, over a step of `length` (s). `new`
-    /// is false where the step brought no new torque: the first, and one over a gap. False during the bias's first estimate.
-    fn remove_bias(&mut self, length: f64, new: bool) -> bool {
+    /// is false where the step brought no new torque: the first, and one over a gap; `felt`: a sensor is over its threshold.
+    /// False during the bias's first estimate.
+    fn remove_bias(&mut self, length: f64, new: bool, felt: bool) -> bool {
         let Self { bias, sensing, detector, release, report, .. } = self;
         let ContactReport { collision_torque, external_torque, remainder_learned, .. } = report;
         *remainder_learned = false;
@@ -201,9 +202,7 @@ impl ContactMonitor {
         leave_out(sensing, collision_torque, Some(bias.bias()));
         let ready = bias.ready();
         let without_bias = collision_torque.iter().zip(bias.bias()).map(|(torque, bias)| torque - bias);
-        let unwanted = sensing.as_ref().map_or(&[][..], Sensing::unwanted);
-        let [on_joints, felt] = detector.any_over(without_bias, unwanted);
-        let touched = ready && (detector.collision() || felt || on_joints);
+        let touched = ready && (detector.collision() || felt || detector.any_over(without_bias));
         if touched && !new {
             release.interrupt();
         } else if touched {

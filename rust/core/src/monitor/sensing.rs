@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Vector3, Vector6};
+use nalgebra::Vector6;
 
 use crate::error::Result;
 use crate::observer::WrenchObserver;
 use crate::observer::{MomentumObserver, Step};
 use crate::robot::{Kinematics, Robot};
 use crate::sensor::{check_readings, SensorTree};
-use crate::spatial::vector::{split, stack};
+use crate::spatial::vector::moved;
 
 /// A wanted sensor that comes back is trusted after so many time constants of the observer, which by then has
 /// forgotten what the sensor missed of a force that came and went.
@@ -52,7 +52,7 @@ impl Sensing {
         let is_wanted = tree.wanted(wanted)?;
         let mut behind_wanted = vec![false; gain.len()];
         for body in 1..robot.body_count() {
-            if tree.at_joint(robot, body).is_some_and(|sensor| is_wanted[sensor]) {
+            if tree.at_joint(body).is_some_and(|sensor| is_wanted[sensor]) {
                 behind_wanted[robot.velocity_range(body)].fill(true);
             }
         }
@@ -207,10 +207,4 @@ impl Sensing {
             }
         }
     }
-}
-
-/// A wrench about a point that lies `arm` before its own.
-fn moved(wrench: &Vector6<f64>, arm: &Vector3<f64>) -> Vector6<f64> {
-    let (force, moment) = split(wrench);
-    stack(&force, &(moment + arm.cross(&force)))
 }

@@ -17,7 +17,7 @@ use crate::observer::Step;
 use crate::robot::{Kinematics, Robot};
 use crate::sensor::distal_parts::{distal_parts, DistalPart};
 use crate::sensor::{sensor_torque, SensorTree};
-use crate::spatial::vector::{split, stack};
+use crate::spatial::vector::{moved, stack};
 
 /// A gain times the time step from which an observer follows from tick to tick.
 const FAST: f64 = 0.5;
@@ -178,9 +178,8 @@ impl WrenchObserver {
     fn observe(&mut self, kinematics: &Kinematics, tree: &SensorTree, sensor: usize) {
         let Some(reference) = self.reference else { return };
         let about = |wrench: &Spatial, state: &Kinematics| {
-            let (force, moment) = split(wrench);
             let arm = tree.position(state, sensor) + (state.origin - reference);
-            stack(&force, &(moment - arm.cross(&force)))
+            moved(wrench, &-arm)
         };
         let known = (self.known_rate[sensor] + self.known_rate_before[sensor]) * 0.5;
         let rate = (self.momentum[sensor] - self.momentum_before[sensor]) / self.decay_step;
@@ -251,9 +250,7 @@ fn load(
     reading: &[f64; 6],
     shift: &Vector3<f64>,
 ) -> Spatial {
-    let turn = tree.rotation(kinematics, sensor) * tree.sensors()[sensor].convention.sign();
-    let [fx, fy, fz, mx, my, mz] = *reading;
-    let force = turn * Vector3::new(fx, fy, fz);
+    let [force, moment] = tree.exerted(kinematics, sensor, reading);
     let at = tree.position(kinematics, sensor) + shift;
-    stack(&force, &(turn * Vector3::new(mx, my, mz) + at.cross(&force)))
+    stack(&force, &(moment + at.cross(&force)))
 }

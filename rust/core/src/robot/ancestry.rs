@@ -1,29 +1,30 @@
-//! Which joints move which bodies.
+//! Which nodes of a tree lie on the way to which: joints that move bodies, sensors that others load.
 
-/// One bit a pair of bodies: whether the first is on the way from the base to the second.
+/// One bit a pair: whether the first is on the way from the root to the second.
 #[derive(Debug, Clone)]
-pub(super) struct Ancestry {
+pub(crate) struct Ancestry {
     /// Words a row.
     stride: usize,
     bits: Vec<u64>,
 }
 
 impl Ancestry {
-    /// Of the bodies from the base to each body, that body included.
+    /// Of the nodes from the root to each node, that one included.
     pub fn new(chains: &[Vec<usize>]) -> Self {
         let stride = chains.len().div_ceil(64);
         let mut bits = vec![0; stride * chains.len()];
-        for (body, chain) in chains.iter().enumerate() {
+        for (node, chain) in chains.iter().enumerate() {
             for above in chain {
-                bits[body * stride + above / 64] |= 1 << (above % 64);
+                bits[node * stride + above / 64] |= 1 << (above % 64);
             }
         }
         Ancestry { stride, bits }
     }
 
+    /// Whether `above` is `node`, or on the way from the root to there.
     #[inline]
-    pub fn moves(&self, joint: usize, body: usize) -> bool {
-        self.bits[body * self.stride + joint / 64] >> (joint % 64) & 1 == 1
+    pub fn leads_to(&self, above: usize, node: usize) -> bool {
+        self.bits[node * self.stride + above / 64] >> (above % 64) & 1 == 1
     }
 }
 
@@ -44,7 +45,7 @@ mod tests {
         let ancestry = Ancestry::new(&chains);
         for (body, chain) in chains.iter().enumerate() {
             for joint in 0..150 {
-                assert_eq!(ancestry.moves(joint, body), chain.contains(&joint), "{joint} {body}");
+                assert_eq!(ancestry.leads_to(joint, body), chain.contains(&joint), "{joint} {body}");
             }
         }
     }

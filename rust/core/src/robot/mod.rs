@@ -1,6 +1,6 @@
 //! The robot: description, tree, kinematics and dynamics.
 
-mod ancestry;
+pub(crate) mod ancestry;
 pub(crate) mod configuration;
 pub(crate) mod description;
 mod dynamics;

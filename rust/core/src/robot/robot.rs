@@ -11,6 +11,7 @@ use super::ids::LinkIndex;
 use super::link::{check_link_tree, Link};
 use super::numbers::LARGEST;
 use crate::error::{Error, Result};
+use crate::spatial::basis::across;
 use crate::spatial::Pose;
 use crate::surface::Surface;
 
@@ -108,8 +109,7 @@ fn axis_frame(joint: &JointDescription) -> Matrix3<f64> {
         return Matrix3::identity();
     }
     let z = joint.axis.normalize();
-    let apart = if z.x.abs() < 0.8 { Vector3::x() } else { Vector3::y() };
-    let y = z.cross(&apart).normalize();
+    let y = across(&z);
     Matrix3::from_columns(&[y.cross(&z), y, z])
 }
 
@@ -274,7 +274,7 @@ impl Robot {
     /// Whether the joint of body `joint` moves `body`: whether it is on the way from the base to there.
     #[inline]
     pub(crate) fn moves(&self, joint: usize, body: usize) -> bool {
-        self.ancestry.moves(joint, body)
+        self.ancestry.leads_to(joint, body)
     }
 
     /// Number of bodies, the world included.

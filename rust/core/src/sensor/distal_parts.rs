@@ -36,7 +36,7 @@ pub(crate) fn distal_parts(robot: &Robot, tree: &SensorTree) -> Vec<DistalPart> 
     let mut parts = vec![];
     for index in WORLD + 1..robot.body_count() {
         let body = &robot.bodies[index];
-        let first_region = tree.at_joint(robot, index);
+        let first_region = tree.at_joint(index);
         let mut rest = DistalPart::new(body.mass, body.com, body.inertia);
         for (number, link) in links.iter().enumerate().filter(|(_, link)| link.body == index) {
             let region = tree.fixed_of_link(number);

@@ -5,7 +5,7 @@ use nalgebra::{Vector3, Vector6};
 use super::sensor_tree::SensorTree;
 use crate::robot::jacobian::for_each_column;
 use crate::robot::{Kinematics, Robot};
-use crate::spatial::vector::{split, stack};
+use crate::spatial::vector::moved;
 
 /// Writes `J(S)^T F_ext,S`, `(nv,)`, for a wrench at the sensor's origin, world axes.
 ///
@@ -19,8 +19,7 @@ pub(crate) fn sensor_torque(
     torque: &mut [f64],
 ) {
     torque.fill(0.0);
-    let (force, moment) = split(wrench);
-    let about_origin = stack(&force, &(moment + tree.position(kinematics, sensor).cross(&force)));
+    let about_origin = moved(wrench, &tree.position(kinematics, sensor));
     for_each_column(robot, kinematics, tree.body(sensor), &Vector3::zeros(), |k, column| {
         torque[k] = column.dot(&about_origin);
     });

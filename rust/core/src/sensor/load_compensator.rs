@@ -210,14 +210,10 @@ impl LoadCompensator {
 
     /// `F_ext,S = F_S + F_c,S` (eq. 19).
     fn external_wrench(&self, kinematics: &Kinematics, sensor: usize, reading: &[f64; 6]) -> Vector6<f64> {
-        let turn = self.tree.rotation(kinematics, sensor) * self.tree.sensors()[sensor].convention.sign();
         let at = self.tree.position(kinematics, sensor);
         let Load { force, moment } = &self.loads[sensor];
-        let [fx, fy, fz, mx, my, mz] = *reading;
-        stack(
-            &(turn * Vector3::new(fx, fy, fz) + force),
-            &(turn * Vector3::new(mx, my, mz) + moment - at.cross(force)),
-        )
+        let [read_force, read_moment] = self.tree.exerted(kinematics, sensor, reading);
+        stack(&(read_force + force), &(read_moment + moment - at.cross(force)))
     }
 }
 

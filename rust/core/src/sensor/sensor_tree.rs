@@ -1,9 +1,10 @@
-//! Where sensors sit, and which of them a link or a sensor loads next.
+//! Where sensors sit, and which links, joints and other sensors lie behind which of them.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::force_torque_sensor::ForceTorqueSensor;
 use crate::error::{Error, Result};
+use crate::robot::ancestry::Ancestry;
 use crate::robot::{Kinematics, Robot, WORLD};
 use crate::spatial::Pose;
 
@@ -21,7 +22,13 @@ pub(crate) struct SensorTree {
     nearest: Vec<Option<usize>>,
     active: Vec<bool>,
     parent: Vec<Option<usize>>,
-    of_link: Vec<Option<usize>>,
+    ancestry: Ancestry,
+    /// By body: the first of its links that its joint moves, if it has links.
+    joint_link: Vec<Option<usize>>,
+    /// By body: the nearest sensor, in use or not, that its joint lies behind.
+    before_joint: Vec<Option<usize>>,
+    /// By body: the nearest sensor, in use or not, that all that its joint moves loads.
+    at_joint: Vec<Option<usize>>,
 }
 
 /// Where a sensor is fixed.
@@ -73,12 +80,34 @@ impl SensorTree {
         let mut distal_first: Vec<usize> = (0..sensors.len()).collect();
         distal_first.sort_by_key(|&sensor| std::cmp::Reverse(depth(sensor)));
         let nearest: Vec<_> = (0..robot.links().len()).map(|link| nearest_from(Some(link))).collect();
+        let links = robot.links();
+        let mut joint_link = vec![None; robot.body_count()];
+        for (index, link) in links.iter().enumerate() {
+            if link.parent.is_none_or(|parent| links[parent].body != link.body) {
+                joint_link[link.body].get_or_insert(index);
+            }
+        }
+        let (mut before_joint, mut at_joint) = (joint_link.clone(), joint_link.clone());
+        // Parents come first; a body without links is as the one that carries it.
+        for (body, link) in joint_link.iter().enumerate() {
+            let carrier = Some(robot.parent_body(body)).filter(|_| body != WORLD);
+            let behind = |known: &[Option<usize>]| carrier.and_then(|carrier| known[carrier]);
+            let parent = link.and_then(|link| links[link].parent);
+            before_joint[body] = parent.map_or_else(|| behind(&before_joint), |parent| nearest[parent]);
+            at_joint[body] = link.map_or_else(|| behind(&at_joint), |link| nearest[link]);
+        }
+        let chain =
+            |sensor| std::iter::successors(Some(sensor), |sensor: &usize| mounts[*sensor].parent).collect();
+        let chains: Vec<Vec<usize>> = (0..sensors.len()).map(chain).collect();
         Ok(Self {
+            ancestry: Ancestry::new(&chains),
+            joint_link,
+            before_joint,
+            at_joint,
             sensors: sensors.to_vec(),
             names: sensors.iter().map(|sensor| sensor.name.clone()).collect(),
             active: vec![true; sensors.len()],
             parent: mounts.iter().map(|mount| mount.parent).collect(),
-            of_link: nearest.clone(),
             mounts,
             distal_first,
             nearest,
@@ -93,11 +122,6 @@ impl SensorTree {
     /// Whether there are no sensors.
     pub fn is_empty(&self) -> bool {
         self.sensors.is_empty()
-    }
-
-    /// The sensors.
-    pub fn sensors(&self) -> &[ForceTorqueSensor] {
-        &self.sensors
     }
 
     /// The sensors' names.
@@ -132,7 +156,7 @@ impl SensorTree {
 
     /// The nearest sensor in use at or above a link: the one that the link loads directly.
     pub fn of_link(&self, link: usize) -> Option<usize> {
-        self.of_link[link]
+        self.in_use(self.nearest[link])
     }
 
     /// The nearest sensor at or above a link, in use or not.
@@ -140,21 +164,29 @@ impl SensorTree {
         self.nearest[link]
     }
 
+    /// The first of a body's links that its joint moves; none for a body without links.
+    pub(crate) fn joint_link(&self, body: usize) -> Option<usize> {
+        self.joint_link[body]
+    }
+
+    /// The nearest sensor in use that the joint which moves a body lies behind.
+    pub(crate) fn before_joint(&self, body: usize) -> Option<usize> {
+        self.in_use(self.before_joint[body])
+    }
+
     /// The nearest sensor, in use or not, that all that a body's joint moves loads: at that joint's own link or before.
-    pub(crate) fn at_joint(&self, robot: &Robot, body: usize) -> Option<usize> {
-        let links = robot.links();
-        let towards_base = |&body: &usize| (body != WORLD).then(|| robot.parent_body(body));
-        let first_link = |body: usize| {
-            let is_first = |parent: Option<usize>| parent.is_none_or(|parent| links[parent].body != body);
-            links.iter().position(|link| link.body == body && is_first(link.parent))
-        };
-        let link = std::iter::successors(Some(body), towards_base).find_map(first_link);
-        link.and_then(|link| self.nearest[link])
+    pub(crate) fn at_joint(&self, body: usize) -> Option<usize> {
+        self.at_joint[body]
     }
 
     /// Whether a sensor lies behind another or is that one, in use or not.
     pub(crate) fn is_behind(&self, sensor: usize, other: usize) -> bool {
-        std::iter::successors(Some(sensor), |sensor| self.fixed_parent(*sensor)).any(|sensor| sensor == other)
+        self.ancestry.leads_to(other, sensor)
+    }
+
+    /// The nearest sensor in use, from one towards the base.
+    fn in_use(&self, sensor: Option<usize>) -> Option<usize> {
+        sensor.and_then(|sensor| if self.active[sensor] { Some(sensor) } else { self.parent[sensor] })
     }
 
     /// Which sensors' contacts are meant, by their names: what is behind such a sensor is meant, too.
@@ -193,7 +225,7 @@ impl SensorTree {
             return;
         }
         self.active.copy_from_slice(active);
-        let Self { mounts, nearest, active, parent, of_link, .. } = self;
+        let Self { mounts, active, parent, .. } = self;
         let in_use = |mut sensor: Option<usize>| {
             while let Some(index) = sensor.filter(|index| !active[*index]) {
                 sensor = mounts[index].parent;
@@ -201,7 +233,6 @@ impl SensorTree {
             sensor
         };
         parent.iter_mut().zip(mounts.iter()).for_each(|(parent, mount)| *parent = in_use(mount.parent));
-        of_link.iter_mut().zip(nearest.iter()).for_each(|(sensor, nearest)| *sensor = in_use(*nearest));
     }
 
     /// A sensor's origin, from `kinematics.origin`, world axes (m).
@@ -217,6 +248,19 @@ impl SensorTree {
     pub fn rotation(&self, kinematics: &Kinematics, sensor: usize) -> Matrix3<f64> {
         let Mount { body, placement, .. } = &self.mounts[sensor];
         kinematics.bodies[*body].rotation * placement.rotation
+    }
+
+    /// The force and moment that the distal side exerts by a reading, about the sensor's origin, world axes.
+    #[inline]
+    pub(crate) fn exerted(
+        &self,
+        kinematics: &Kinematics,
+        sensor: usize,
+        reading: &[f64; 6],
+    ) -> [Vector3<f64>; 2] {
+        let turn = self.rotation(kinematics, sensor) * self.sensors[sensor].convention.sign();
+        let [fx, fy, fz, mx, my, mz] = *reading;
+        [turn * Vector3::new(fx, fy, fz), turn * Vector3::new(mx, my, mz)]
     }
 }
 

@@ -13,3 +13,10 @@ pub(crate) fn stack(linear: &Vector3<f64>, angular: &Vector3<f64>) -> Vector6<f6
 pub(crate) fn split(vector: &Vector6<f64>) -> (Vector3<f64>, Vector3<f64>) {
     (Vector3::new(vector[0], vector[1], vector[2]), Vector3::new(vector[3], vector[4], vector[5]))
 }
+
+/// A wrench about a point that lies `arm` before its own.
+#[inline]
+pub(crate) fn moved(wrench: &Vector6<f64>, arm: &Vector3<f64>) -> Vector6<f64> {
+    let (force, moment) = split(wrench);
+    stack(&force, &(moment + arm.cross(&force)))
+}

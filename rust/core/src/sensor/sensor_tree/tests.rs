@@ -113,5 +113,5 @@ fn long_chains_without_links_need_no_deep_stack() {
     let tree = SensorTree::new(&robot, &[]).unwrap();
     let last = robot.body_count() - 1;
     let search = std::thread::Builder::new().stack_size(64 * 1024);
-    assert_eq!(search.spawn(move || tree.at_joint(&robot, last)).unwrap().join().unwrap(), None);
+    assert_eq!(search.spawn(move || tree.at_joint(last)).unwrap().join().unwrap(), None);
 }
