@@ -116,10 +116,8 @@ impl SignalTree {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{Matrix3, Vector3};
-
     use super::{Signal, SignalTree};
-    use crate::robot::{JointDescription, JointKind, LinkDescription, LinkIndex, Robot, RobotDescription};
+    use crate::robot::{test_tree, LinkDescription, LinkIndex};
     use crate::sensor::SensorTree;
     use crate::spatial::Pose;
     use crate::surface::{Geometry, Part};
@@ -128,35 +126,12 @@ mod tests {
     fn a_long_chain_is_put_in_order() {
         // Takes minutes where each comparison of the sort walks down the chain and through all links.
         let count = 2000;
-        let joint = |index: usize| JointDescription {
-            name: format!("j{index}"),
-            parent: index,
-            kind: JointKind::Revolute,
-            axis: Vector3::y(),
-            placement: Pose::identity(),
-            mass: 1.0,
-            com: Vector3::zeros(),
-            inertia: Matrix3::identity(),
-            armature: 0.0,
-        };
+        let joint = |index: usize| test_tree::joint(&format!("j{index}"), index);
         let link = |index: usize| LinkDescription {
-            name: format!("l{index}"),
-            joint: index,
-            placement: Pose::identity(),
-            parent: index.checked_sub(1),
-            mass: 1.0,
-            com: Vector3::zeros(),
-            inertia: Matrix3::identity(),
             geometry: vec![Part { geometry: Geometry::Sphere { radius: 0.1 }, pose: Pose::identity() }],
+            ..test_tree::link(&format!("l{index}"), index, index.checked_sub(1))
         };
-        let robot = Robot::new(RobotDescription {
-            name: "chain".into(),
-            joints: (0..count).map(joint).collect(),
-            links: (0..=count).map(link).collect(),
-            gravity: Vector3::zeros(),
-            warnings: vec![],
-        })
-        .unwrap();
+        let robot = test_tree::robot((0..count).map(joint).collect(), (0..=count).map(link).collect());
         let mut tree = SignalTree::new(&robot, &SensorTree::new(&robot, &[]).unwrap());
         let mut region = Vec::new();
         tree.region(|signal| signal == Signal::Joint { body: 1500 }, |_| false, &mut region);

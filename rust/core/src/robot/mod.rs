@@ -13,6 +13,8 @@ mod link;
 mod numbers;
 #[allow(clippy::module_inception)] // the room is called after what is in it
 mod robot;
+#[cfg(test)]
+pub(crate) mod test_tree;
 
 pub use description::{JointDescription, JointKind, LinkDescription, RobotDescription};
 pub use dynamics::{ForwardDynamics, MomentumPass};

@@ -1,7 +1,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::super::{Convention, ForceTorqueSensor, SensorTree};
-use crate::robot::{JointDescription, JointKind, Kinematics, LinkDescription, Robot, RobotDescription};
+use crate::robot::{test_tree, JointDescription, Kinematics, LinkDescription, Robot};
 use crate::spatial::Pose;
 use crate::Error;
 
@@ -9,46 +9,19 @@ fn at(x: f64) -> Pose {
     Pose { translation: Vector3::new(x, 0.0, 0.0), ..Pose::identity() }
 }
 
-fn joint(name: &str, parent: usize) -> JointDescription {
-    JointDescription {
-        name: name.into(),
-        parent,
-        kind: JointKind::Revolute,
-        axis: Vector3::y(),
-        placement: at(1.0),
-        mass: 1.0,
-        com: Vector3::zeros(),
-        inertia: Matrix3::identity(),
-        armature: 0.0,
-    }
-}
-
 /// base - j1 - a - (fixed) - b - j2 - c, and d on a joint at a; links listed backwards.
 fn robot() -> Robot {
-    let link = |name: &str, joint, x, parent| LinkDescription {
-        name: name.into(),
-        joint,
-        placement: at(x),
-        parent,
-        mass: 0.5,
-        com: Vector3::zeros(),
-        inertia: Matrix3::identity(),
-        geometry: vec![],
-    };
-    Robot::new(RobotDescription {
-        name: "tree".into(),
-        joints: vec![joint("j1", 0), joint("j2", 1), joint("j3", 1)],
-        links: vec![
-            link("d", 3, 0.0, Some(3)),
-            link("c", 2, 0.0, Some(2)),
-            link("b", 1, 0.2, Some(3)),
-            link("a", 1, 0.0, Some(4)),
-            link("base", 0, 0.0, None),
-        ],
-        gravity: Vector3::zeros(),
-        warnings: vec![],
-    })
-    .expect("a valid description")
+    let joint = |name, parent| JointDescription { placement: at(1.0), ..test_tree::joint(name, parent) };
+    let link =
+        |name, joint, x, parent| LinkDescription { placement: at(x), ..test_tree::link(name, joint, parent) };
+    let links = vec![
+        link("d", 3, 0.0, Some(3)),
+        link("c", 2, 0.0, Some(2)),
+        link("b", 1, 0.2, Some(3)),
+        link("a", 1, 0.0, Some(4)),
+        link("base", 0, 0.0, None),
+    ];
+    test_tree::robot(vec![joint("j1", 0), joint("j2", 1), joint("j3", 1)], links)
 }
 
 fn sensor(name: &str, link: &str) -> ForceTorqueSensor {
@@ -100,18 +73,25 @@ fn bad_sensors_are_named() {
 }
 
 #[test]
+fn joints_lie_behind_sensors() {
+    let mut tree =
+        SensorTree::new(&robot(), &[sensor("A", "a"), sensor("B", "b"), sensor("C", "c")]).expect("valid");
+    assert_eq!([1, 2, 3].map(|body| tree.joint_link(body)), [Some(3), Some(1), Some(0)]);
+    assert_eq!([1, 2, 3].map(|body| tree.at_joint(body)), [Some(0), Some(2), Some(0)]);
+    assert_eq!([1, 2, 3].map(|body| tree.before_joint(body)), [None, Some(1), Some(0)]);
+    let behind = |sensor| [0, 1, 2].map(|other| tree.is_behind(sensor, other));
+    assert_eq!([0, 1, 2].map(behind), [[true, false, false], [true, true, false], [true, true, true]]);
+    tree.set_active(&[true, false, true]);
+    assert_eq!(tree.before_joint(2), Some(0));
+}
+
+#[test]
 fn long_chains_without_links_need_no_deep_stack() {
-    let joint = |index: usize| joint(&format!("j{index}"), index);
-    let robot = Robot::new(RobotDescription {
-        name: "chain".into(),
-        joints: (0..3000).map(joint).collect(),
-        links: vec![],
-        gravity: Vector3::zeros(),
-        warnings: vec![],
-    })
-    .unwrap();
-    let tree = SensorTree::new(&robot, &[]).unwrap();
+    let joints = (0..3000).map(|index| test_tree::joint(&format!("j{index}"), index)).collect();
+    let robot = test_tree::robot(joints, vec![]);
     let last = robot.body_count() - 1;
-    let search = std::thread::Builder::new().stack_size(64 * 1024);
-    assert_eq!(search.spawn(move || tree.at_joint(last)).unwrap().join().unwrap(), None);
+    let make = std::thread::Builder::new()
+        .stack_size(64 * 1024)
+        .spawn(move || SensorTree::new(&robot, &[]).unwrap());
+    assert_eq!(make.unwrap().join().unwrap().at_joint(last), None);
 }
