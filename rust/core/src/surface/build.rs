@@ -16,7 +16,7 @@ impl Surface {
     /// consistent and outward.
     ///
     /// # Errors
-    /// [`Error::Geometry`](crate::Error::geometry) if there are no parts, a number is not finite, a size is not
+    /// [`Error::Geometry`] if there are no parts, a number is not finite, a size is not
     /// positive, a mesh is empty, has an index out of range, or has nothing left after the repair.
     pub fn new(parts: Vec<Part>) -> Result<(Surface, Vec<String>)> {
         if parts.is_empty() {
