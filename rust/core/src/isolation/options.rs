@@ -26,7 +26,7 @@ const LOCATE_WITHIN: f64 = 0.05;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct IsolatorOptions {
     /// A torque is felt above it: per velocity variable, or one for all (Nm, N). None for three standard deviations of
     /// `noise` at rest.
