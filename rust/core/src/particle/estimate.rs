@@ -20,6 +20,8 @@ use crate::posterior::ContactEstimate;
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Event {
     /// No contact before or now.
     #[default]
@@ -66,6 +68,7 @@ impl Event {
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FilterEstimate {
     /// The contact. It is ambiguous also as long as motion has not confirmed that it is a push.
     pub estimate: ContactEstimate,

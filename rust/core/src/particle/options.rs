@@ -16,6 +16,8 @@ use crate::torque::{ForceModel, NoiseModel, TorqueNoise};
 /// assert_ne!(baseline.motion, Motion::default());
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Motion {
     /// The obstacle stays, convex and springy (Bimbo 2019, eq. 8).
     #[default]
@@ -40,6 +42,8 @@ pub enum Motion {
 /// assert_ne!(paper.likelihood, Likelihood::default());
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Likelihood {
     /// Gaussian, with noise per joint; the force is integrated out.
     #[default]
@@ -64,6 +68,8 @@ pub enum Likelihood {
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct FilterOptions {
     /// How many particles.
     pub particles: usize,

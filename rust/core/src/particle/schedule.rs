@@ -11,6 +11,8 @@ use crate::error::{Error, Result};
 /// assert!(point_noise[0] > point_noise[1] && updates == 25);
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Schedule {
     /// By what the data show: sharp as far as enough particles keep a say and as the torques left over allow, once
     /// for what a motion tells anew; copies are moved by a share of how far the particles of a place lie apart.

@@ -22,6 +22,7 @@ use crate::torque::Frames;
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactEstimate {
     /// The most probable place on the most probable link; none where the torques show no contact.
     pub contact: Option<Mode>,

@@ -21,6 +21,7 @@ use crate::robot::LinkIndex;
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Mode {
     /// Which link.
     pub link: LinkIndex,

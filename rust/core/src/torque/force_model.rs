@@ -23,6 +23,8 @@ use crate::spatial::basis::across;
 /// assert!(ContactParticleFilter::new(robot, cone(-1.0)).is_err());
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum ForceModel {
     /// Along the inward normal only (Bimbo 2019, eq. 7).
     #[default]

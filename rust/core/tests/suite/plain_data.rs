@@ -5,6 +5,7 @@ use std::sync::Arc;
 use contactsense::isolation::{ContactIsolator, IsolatorOptions};
 use contactsense::load::{UrdfGeometry, UrdfOptions};
 use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
+use contactsense::particle::{FilterOptions, ForceModel};
 use contactsense::robot::{Robot, RobotDescription};
 use contactsense::sensor::{Convention, ForceTorqueSensor};
 use contactsense::spatial::Pose;
@@ -46,6 +47,10 @@ fn options_are_as_they_were_written() {
     assert_eq!(read, UrdfOptions { geometry: UrdfGeometry::Visual, ..UrdfOptions::default() });
     let wrong = serde_json::from_str::<UrdfOptions>(r#"{"geometri": "visual"}"#);
     assert!(wrong.expect_err("a slip").to_string().contains("geometri"));
+    let text = r#"{"particles": 500, "force_model": {"friction_cone": 0.5}}"#;
+    let read: FilterOptions = serde_json::from_str(text).expect("the rest has defaults");
+    let force_model = ForceModel::FrictionCone(0.5);
+    assert_eq!(read, FilterOptions { particles: 500, force_model, ..FilterOptions::default() });
     // The defaults of thresholds are another matter in a monitor, so that none may be left out.
     let partial = serde_json::from_str::<IsolatorOptions>(r#"{"max_contacts": 2}"#);
     assert!(partial.expect_err("no thresholds").to_string().contains("torque_threshold"));
