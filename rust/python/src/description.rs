@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use contactsense::load::load_mesh;
-use contactsense::robot::{JointDescription, JointKind, LinkDescription, RobotDescription};
+use contactsense::robot::{
+    BodyIndex, JointDescription, JointKind, LinkDescription, LinkIndex, RobotDescription,
+};
 use contactsense::spatial::Pose;
 use contactsense::surface::{Geometry, Part};
 use contactsense::Error;
@@ -74,7 +76,7 @@ fn joint(tuple: &Bound<'_, PyTuple>) -> PyResult<JointDescription> {
     let py = tuple.py();
     Ok(JointDescription {
         name: tuple.get_item(0)?.extract()?,
-        parent: tuple.get_item(1)?.extract()?,
+        parent: BodyIndex::new(tuple.get_item(1)?.extract()?),
         kind: kind(py, &tuple.get_item(2)?.extract::<String>()?)?,
         axis: vector("axis", &tuple.get_item(3)?)?,
         placement: placement("placement", &tuple.get_item(4)?)?,
@@ -137,9 +139,9 @@ fn link(tuple: &Bound<'_, PyTuple>) -> PyResult<(LinkDescription, Vec<Option<Mes
         files.push(file);
     }
     let link = LinkDescription {
-        joint: tuple.get_item(1)?.extract()?,
+        body: BodyIndex::new(tuple.get_item(1)?.extract()?),
         placement: placement("placement", &tuple.get_item(2)?)?,
-        parent: tuple.get_item(3)?.extract()?,
+        parent: tuple.get_item(3)?.extract::<Option<usize>>()?.map(LinkIndex::new),
         mass: tuple.get_item(4)?.extract()?,
         com: vector("com", &tuple.get_item(5)?)?,
         inertia: square("inertia", &tuple.get_item(6)?)?,

@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::ids::{BodyIndex, LinkIndex};
 use crate::spatial::Pose;
 use crate::surface::Part;
 
@@ -73,8 +74,8 @@ impl JointKind {
 pub struct JointDescription {
     /// Unique name.
     pub name: String,
-    /// 0 for the world, k for the k-th joint (1-based); smaller than this joint's own number.
-    pub parent: usize,
+    /// The body that carries it: the world, or the one that an earlier joint moves.
+    pub parent: BodyIndex,
     /// How it moves.
     pub kind: JointKind,
     /// Axis in the joint frame (unused by a free flyer).
@@ -94,12 +95,13 @@ pub struct JointDescription {
 /// A URDF link: a named frame on a body, with the parts of its surface.
 ///
 /// ```
-/// use contactsense::robot::{LinkDescription, Robot, RobotDescription};
+/// use contactsense::robot::{LinkDescription, LinkIndex, Robot, RobotDescription};
 ///
 /// let mut description = RobotDescription::example_arm();
 /// // A frame at the tip, which has no surface and no mass.
 /// let last = description.links[6].clone();
-/// let mut tip = LinkDescription { name: "tip".into(), parent: Some(6), mass: 0.0, geometry: vec![], ..last };
+/// let parent = Some(LinkIndex::new(6));
+/// let mut tip = LinkDescription { name: "tip".into(), parent, mass: 0.0, geometry: vec![], ..last };
 /// tip.placement.translation.z = 0.3;
 /// tip.inertia.fill(0.0);
 /// description.links.push(tip);
@@ -114,12 +116,12 @@ pub struct JointDescription {
 pub struct LinkDescription {
     /// Unique name.
     pub name: String,
-    /// 0 for the world, k for the k-th joint's body.
-    pub joint: usize,
+    /// The body it is fixed to.
+    pub body: BodyIndex,
     /// Link frame in the joint's frame.
     pub placement: Pose,
-    /// Index of the link that its joint, fixed or moving, hangs from; none for the root.
-    pub parent: Option<usize>,
+    /// The link that its joint, fixed or moving, hangs from; none for the root.
+    pub parent: Option<LinkIndex>,
     /// Its own mass (kg): of the joint's body, the part that is this link's.
     pub mass: f64,
     /// Its own centre of mass in the link frame (m).

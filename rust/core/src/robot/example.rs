@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{JointDescription, JointKind, LinkDescription, Robot, RobotDescription};
+use super::{BodyIndex, JointDescription, JointKind, LinkDescription, LinkIndex, Robot, RobotDescription};
 use crate::spatial::Pose;
 use crate::surface::{Geometry, Part};
 
@@ -21,7 +21,7 @@ impl RobotDescription {
         let inertia = Matrix3::from_diagonal(&Vector3::new(rod, rod, 0.5 * MASS * RADIUS * RADIUS));
         let joint = |k: usize| JointDescription {
             name: format!("joint_{}", k + 1),
-            parent: k,
+            parent: BodyIndex::new(k),
             kind: JointKind::Revolute,
             axis: if k.is_multiple_of(2) { Vector3::z() } else { Vector3::y() },
             placement: up(LENGTH),
@@ -32,9 +32,9 @@ impl RobotDescription {
         };
         let link = |k: usize| LinkDescription {
             name: format!("link_{}", k + 1),
-            joint: k + 1,
+            body: BodyIndex::new(k + 1),
             placement: Pose::identity(),
-            parent: k.checked_sub(1),
+            parent: k.checked_sub(1).map(LinkIndex::new),
             mass: MASS,
             com,
             inertia,

@@ -79,7 +79,7 @@ fn check_size(owner: &str, mass: f64, inertia: &Matrix3<f64>) -> Result<()> {
 /// A description that was checked: finite numbers, parents before children.
 fn check_joint(joint: &JointDescription, number: usize) -> Result<()> {
     let name = &joint.name;
-    if joint.parent >= number {
+    if joint.parent.get() >= number {
         return Err(Error::model(format!("joint '{name}': its parent must come before it")));
     }
     let finite = joint.placement.rotation.iter().chain(joint.placement.translation.iter());
@@ -133,10 +133,10 @@ impl Robot {
         for (index, joint) in joints.iter().enumerate() {
             check_joint(joint, index + 1).map_err(|error| error.of(&format!("joint '{}'", joint.name)))?;
             let frame = axis_frame(joint);
-            let parent_frame = frames[joint.parent];
+            let parent_frame = frames[joint.parent.get()];
             bodies.push(Body {
                 kind: joint.kind,
-                parent: joint.parent,
+                parent: joint.parent.get(),
                 placement: Pose {
                     rotation: parent_frame.transpose() * joint.placement.rotation * frame,
                     translation: parent_frame.transpose() * joint.placement.translation,
@@ -148,7 +148,7 @@ impl Robot {
                 inertia: frame.transpose() * joint.inertia * frame,
                 armature: joint.armature,
             });
-            let mut chain = chains[joint.parent].clone();
+            let mut chain = chains[joint.parent.get()].clone();
             chain.push(index + 1);
             chains.push(chain);
             frames.push(frame);
@@ -162,14 +162,15 @@ impl Robot {
         let mut frozen = Vec::with_capacity(links.len());
         for (index, link) in links.into_iter().enumerate() {
             let owner = format!("link '{}'", link.name);
-            if link.joint >= bodies.len() {
+            let body = link.body.get();
+            if body >= bodies.len() {
                 return Err(Error::model(format!("{owner}: its joint does not exist")).of(&owner));
             }
             if link_index.insert(link.name.clone(), LinkIndex::new(index)).is_some() {
                 return Err(Error::model(format!("two links are named '{}'", link.name)).of(&owner));
             }
             check_size(&owner, link.mass, &link.inertia).map_err(|error| error.of(&owner))?;
-            let frame = frames[link.joint].transpose();
+            let frame = frames[body].transpose();
             let placement = Pose {
                 rotation: frame * link.placement.rotation,
                 translation: frame * link.placement.translation,
@@ -180,14 +181,14 @@ impl Robot {
                 let (surface, odd) = Surface::new(link.geometry).map_err(|error| error.within(&owner))?;
                 warnings.extend(odd.into_iter().map(|text| format!("{owner}: {text}")));
                 touchable.push(LinkIndex::new(index));
-                body_links[link.joint].push(LinkIndex::new(index));
+                body_links[body].push(LinkIndex::new(index));
                 Some(surface)
             };
             frozen.push(Link {
                 name: link.name,
-                body: link.joint,
+                body,
                 placement,
-                parent: link.parent,
+                parent: link.parent.map(LinkIndex::get),
                 mass: link.mass,
                 com: link.com,
                 inertia: link.inertia,

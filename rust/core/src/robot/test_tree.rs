@@ -2,14 +2,14 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{JointDescription, JointKind, LinkDescription, Robot, RobotDescription};
+use super::{BodyIndex, JointDescription, JointKind, LinkDescription, LinkIndex, Robot, RobotDescription};
 use crate::spatial::Pose;
 
 /// A joint about y at its parent's origin; 1 kg.
 pub(crate) fn joint(name: &str, parent: usize) -> JointDescription {
     JointDescription {
         name: name.into(),
-        parent,
+        parent: BodyIndex::new(parent),
         kind: JointKind::Revolute,
         axis: Vector3::y(),
         placement: Pose::identity(),
@@ -21,12 +21,12 @@ pub(crate) fn joint(name: &str, parent: usize) -> JointDescription {
 }
 
 /// A link at its joint's origin, without surface; 0.5 kg.
-pub(crate) fn link(name: &str, joint: usize, parent: Option<usize>) -> LinkDescription {
+pub(crate) fn link(name: &str, body: usize, parent: Option<usize>) -> LinkDescription {
     LinkDescription {
         name: name.into(),
-        joint,
+        body: BodyIndex::new(body),
         placement: Pose::identity(),
-        parent,
+        parent: parent.map(LinkIndex::new),
         mass: 0.5,
         com: Vector3::zeros(),
         inertia: Matrix3::identity(),

@@ -3,7 +3,9 @@
 
 use std::sync::Arc;
 
-use contactsense::robot::{JointDescription, JointKind, LinkDescription, LinkIndex, Robot, RobotDescription};
+use contactsense::robot::{
+    BodyIndex, JointDescription, JointKind, LinkDescription, LinkIndex, Robot, RobotDescription,
+};
 use contactsense::spatial::Pose;
 use contactsense::surface::{Geometry, Part};
 use nalgebra::{Matrix3, Rotation3, Vector3};
@@ -17,9 +19,9 @@ fn capsule(name: &str, joint: usize, parent: Option<usize>, length: f64) -> Link
     let geometry = Geometry::Capsule { radius: 0.06, half_length: 0.5 * length };
     LinkDescription {
         name: name.into(),
-        joint,
+        body: BodyIndex::new(joint),
         placement: Pose::identity(),
-        parent,
+        parent: parent.map(LinkIndex::new),
         mass: 2.0,
         com: COM,
         inertia: INERTIA,
@@ -36,7 +38,7 @@ fn joint(
 ) -> JointDescription {
     JointDescription {
         name: name.into(),
-        parent,
+        parent: BodyIndex::new(parent),
         kind,
         axis,
         placement: Pose {
@@ -53,7 +55,7 @@ fn joint(
 /// Appends a chain of revolute joints with alternating axes behind `parent`; returns its last joint.
 fn chain(description: &mut RobotDescription, name: &str, parent: usize, at: Vector3<f64>, count: usize) {
     let axes = [Vector3::z(), Vector3::y(), Vector3::x(), Vector3::new(0.3, -0.5, 0.8)];
-    let mut link = description.links.iter().position(|link| link.joint == parent);
+    let mut link = description.links.iter().position(|link| link.body.get() == parent);
     let (mut parent, mut at) = (parent, at);
     for k in 0..count {
         let kind = if k == 2 { JointKind::Continuous } else { JointKind::Revolute };

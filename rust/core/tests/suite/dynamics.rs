@@ -98,7 +98,7 @@ fn a_joint_that_moves_nothing_stands_still() {
         name: "massless".into(),
         joints: vec![contactsense::robot::JointDescription {
             name: "joint".into(),
-            parent: 0,
+            parent: contactsense::robot::BodyIndex::WORLD,
             kind: contactsense::robot::JointKind::Revolute,
             axis: nalgebra::Vector3::z(),
             placement: contactsense::spatial::Pose::identity(),

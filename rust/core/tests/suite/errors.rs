@@ -4,7 +4,7 @@ use std::error::Error as _;
 use std::path::{Path, PathBuf};
 
 use contactsense::load::{load_mesh, UrdfOptions};
-use contactsense::robot::{Robot, RobotDescription};
+use contactsense::robot::{BodyIndex, Robot, RobotDescription};
 use contactsense::surface::Geometry;
 use contactsense::Error;
 
@@ -116,7 +116,7 @@ fn descriptions_made_by_hand_name_the_element() {
     };
     let cases: [(Edit, Option<&str>); 5] = [
         (|robot| robot.joints[1].axis.fill(0.0), Some("joint 'joint_2'")),
-        (|robot| robot.links[1].joint = 99, Some("link 'link_2'")),
+        (|robot| robot.links[1].body = BodyIndex::new(99), Some("link 'link_2'")),
         (|robot| robot.links[1].mass = f64::NAN, Some("link 'link_2'")),
         (
             |robot| robot.links[1].geometry[0].geometry = Geometry::Sphere { radius: 0.0 },

@@ -6,6 +6,7 @@ use urdf_rs::{Inertial, JointType};
 use super::tree::{Tree, ROOT_JOINT};
 use crate::error::{Error, Result};
 use crate::robot::description::{JointDescription, JointKind, LinkDescription, RobotDescription};
+use crate::robot::{BodyIndex, LinkIndex};
 use crate::spatial::Pose;
 
 /// Joints, bodies and link frames, the latter in the order of the tree's visits and without shapes.
@@ -13,39 +14,45 @@ pub(super) fn bodies(tree: &Tree, locked: &[(String, f64)], floating_base: bool)
     let mut joints: Vec<JointDescription> = vec![];
     let mut links: Vec<LinkDescription> = Vec::with_capacity(tree.visits.len());
     for visit in &tree.visits {
-        let (joint, placement) = match visit.joint.map(|number| &tree.robot.joints[number]) {
+        let (body, placement) = match visit.joint.map(|number| &tree.robot.joints[number]) {
             None if floating_base => {
-                joints.push(joint(ROOT_JOINT, 0, JointKind::FreeFlyer, Vector3::zeros(), Pose::identity()));
-                (1, Pose::identity())
+                joints.push(joint(
+                    ROOT_JOINT,
+                    BodyIndex::WORLD,
+                    JointKind::FreeFlyer,
+                    Vector3::zeros(),
+                    Pose::identity(),
+                ));
+                (BodyIndex::new(1), Pose::identity())
             }
-            None => (0, Pose::identity()),
+            None => (BodyIndex::WORLD, Pose::identity()),
             Some(urdf) => {
                 let parent = &links[visit.parent];
                 let here = parent.placement.compose(&pose(&urdf.origin));
                 let axis = Vector3::from(*urdf.axis.xyz);
                 match (kind(urdf)?, locked.iter().find(|(name, _)| *name == urdf.name)) {
-                    (None, _) => (parent.joint, here),
+                    (None, _) => (parent.body, here),
                     (Some(kind), Some((_, position))) => {
-                        (parent.joint, here.compose(&motion(kind, &axis, *position)))
+                        (parent.body, here.compose(&motion(kind, &axis, *position)))
                     }
                     (Some(kind), None) => {
-                        joints.push(joint(&urdf.name, parent.joint, kind, axis.normalize(), here));
-                        (joints.len(), Pose::identity())
+                        joints.push(joint(&urdf.name, parent.body, kind, axis.normalize(), here));
+                        (BodyIndex::new(joints.len()), Pose::identity())
                     }
                 }
             }
         };
         let link = &tree.robot.links[visit.link];
         // What is fixed to the world never moves.
-        if let Some(body) = joint.checked_sub(1).and_then(|index| joints.get_mut(index)) {
-            add(body, &placement, &link.inertial);
+        if let Some(moving) = body.get().checked_sub(1).and_then(|index| joints.get_mut(index)) {
+            add(moving, &placement, &link.inertial);
         }
         let inertial = pose(&link.inertial.origin);
         links.push(LinkDescription {
             name: link.name.clone(),
-            joint,
+            body,
             placement,
-            parent: visit.joint.map(|_| visit.parent),
+            parent: visit.joint.map(|_| LinkIndex::new(visit.parent)),
             mass: link.inertial.mass.value,
             com: inertial.translation,
             inertia: inertial.rotation * tensor(&link.inertial) * inertial.rotation.transpose(),
@@ -109,7 +116,7 @@ fn motion(kind: JointKind, axis: &Vector3<f64>, position: f64) -> Pose {
 
 fn joint(
     name: &str,
-    parent: usize,
+    parent: BodyIndex,
     kind: JointKind,
     axis: Vector3<f64>,
     placement: Pose,

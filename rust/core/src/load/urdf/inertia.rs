@@ -7,6 +7,7 @@ use super::names::name_list;
 use super::tree::Tree;
 use crate::error::{Error, Result};
 use crate::robot::description::RobotDescription;
+use crate::robot::BodyIndex;
 
 /// A principal moment is clearly negative when below both: published models have rounding errors below the first,
 /// and inertias moved to the wrong point (up to a fifth of the largest moment) below the second (kg m^2).
@@ -45,7 +46,7 @@ pub(super) fn check_bodies(description: &RobotDescription) -> Result<()> {
     for (index, joint) in description.joints.iter().enumerate() {
         let moments = principal_moments(joint.inertia)?;
         if moments[0] < -f64::max(NEGATIVE_MOMENT, NEGATIVE_SHARE * moments[2]) {
-            let links = description.links.iter().filter(|link| link.joint == index + 1);
+            let links = description.links.iter().filter(|link| link.body == BodyIndex::new(index + 1));
             let links: Vec<&str> = links.map(|link| link.name.as_str()).collect();
             return Err(Error::model(format!(
                 "joint '{}' (links {}): inertia has the negative principal moment {} kg m^2",

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
 
 use super::{from_urdf, UrdfGeometry, UrdfOptions};
-use crate::robot::{JointKind, Robot, RobotDescription};
+use crate::robot::{BodyIndex, JointKind, Robot, RobotDescription};
 use crate::surface::Geometry;
 use crate::{Error, Result};
 
@@ -83,10 +83,11 @@ fn names(description: &RobotDescription) -> Vec<&str> {
 fn children_go_depth_first_by_joint_name() {
     let arm = read(&arm(), &UrdfOptions::default()).unwrap();
     assert_eq!(names(&arm), ["a_left", "rail", "z_right"]);
-    assert_eq!(arm.joints.iter().map(|joint| joint.parent).collect::<Vec<_>>(), [0, 1, 0]);
+    assert_eq!(arm.joints.iter().map(|joint| joint.parent.get()).collect::<Vec<_>>(), [0, 1, 0]);
     let kinds: Vec<JointKind> = arm.joints.iter().map(|joint| joint.kind).collect();
     assert_eq!(kinds, [JointKind::Continuous, JointKind::Prismatic, JointKind::Revolute]);
-    let links: Vec<(&str, usize)> = arm.links.iter().map(|link| (link.name.as_str(), link.joint)).collect();
+    let links: Vec<(&str, usize)> =
+        arm.links.iter().map(|link| (link.name.as_str(), link.body.get())).collect();
     assert_eq!(links, [("base", 0), ("left", 1), ("tool", 1), ("slide", 2), ("right", 3)]);
     assert_eq!(arm.joints[2].axis, Vector3::y());
     assert!(arm
@@ -118,7 +119,7 @@ fn a_floating_base_carries_the_root_link() {
     let free = read(&arm(), &options).unwrap();
     assert_eq!(names(&free)[0], "root_joint");
     assert_eq!((free.joints[0].kind, free.joints[0].mass), (JointKind::FreeFlyer, 2.0));
-    assert!(free.links.iter().all(|link| link.joint > 0));
+    assert!(free.links.iter().all(|link| link.body != BodyIndex::WORLD));
     let taken = arm().replace("rail", "root_joint");
     assert!(read(&taken, &UrdfOptions::default()).is_ok());
     assert!(

@@ -7,7 +7,9 @@ use crate::particle::instant::Instant;
 use crate::particle::spring::Slope;
 use crate::particle::weight;
 use crate::particle::window::Window;
-use crate::robot::{JointDescription, JointKind, LinkDescription, LinkIndex, Robot, RobotDescription};
+use crate::robot::{
+    BodyIndex, JointDescription, JointKind, LinkDescription, LinkIndex, Robot, RobotDescription,
+};
 use crate::spatial::Pose;
 use crate::surface::{Geometry, Part};
 use crate::torque::{ForceModel, NoiseModel};
@@ -30,7 +32,7 @@ fn arm() -> Robot {
         let inertia = Matrix3::identity() * 0.01;
         joints.push(JointDescription {
             name: format!("joint_{k}"),
-            parent: k,
+            parent: BodyIndex::new(k),
             kind: JointKind::Revolute,
             axis: Vector3::z(),
             placement,
@@ -42,7 +44,7 @@ fn arm() -> Robot {
         let pose = Pose { rotation: Matrix3::identity(), translation: Vector3::new(0.0, 0.0, 0.1) };
         links.push(LinkDescription {
             name: format!("link_{k}"),
-            joint: k + 1,
+            body: BodyIndex::new(k + 1),
             placement: Pose::identity(),
             parent: None,
             mass: 1.0,
