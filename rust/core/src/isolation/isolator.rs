@@ -368,7 +368,7 @@ fn check_wrenches(tree: &SensorTree, wrenches: &[Option<Vector6<f64>>]) -> Resul
         if let Some(value) = wrench.iter().find(|x| x.is_nan() || x.abs() > crate::robot::LARGEST) {
             return Err(Error::input(
                 "wrenches",
-                format!("that of '{name}' has {value}; give finite numbers [N, Nm], or NaN to leave it out"),
+                format!("that of '{name}' has {value}; give finite numbers [N, Nm], or none (NaN in NumPy) to leave it out"),
             ));
         }
     }

@@ -244,7 +244,7 @@ fn too_large(tree: &SensorTree, row: usize) -> Error {
     Error::input(
         "wrenches",
         format!(
-            "row {row} ('{}') must be below {LARGEST:e}; NaN where a sensor gives no reading",
+            "row {row} ('{}') must be below {LARGEST:e}; none (NaN in NumPy) where a sensor gives no reading",
             tree.names()[row]
         ),
     )

@@ -89,6 +89,7 @@ fn links_and_joints_are_named() {
     };
     let ball = "<collision><geometry><sphere radius='-1'/></geometry></collision>";
     let mesh = "<collision><geometry><mesh filename='cut.stl'/></geometry></collision>";
+    let missing = mesh.replace("cut", "none");
     folder.write("cut.stl", "solid\n");
     let cases = [
         (robot(&link("b", ""), "planar"), "joint 'j'", "two.urdf"),
@@ -97,6 +98,7 @@ fn links_and_joints_are_named() {
         (robot(&link("b", "").replace("izz='1'", "izz='-9'"), "continuous"), "joint 'j'", "two.urdf"),
         (robot(&link("b", ball), "continuous"), "link 'b'", "two.urdf"),
         (robot(&link("b", mesh), "continuous"), "link 'b'", "cut.stl"),
+        (robot(&link("b", &missing), "continuous"), "link 'b'", "two.urdf"),
     ];
     for (text, element, file) in cases {
         let error = load(&folder.write("two.urdf", &text));

@@ -31,9 +31,10 @@ fn geometry(shape: &Shape, link: &str, meshes: &MeshFinder) -> Result<Geometry> 
         Shape::Capsule { radius, length } => Geometry::Capsule { radius: *radius, half_length: 0.5 * length },
         Shape::Sphere { radius } => Geometry::Sphere { radius: *radius },
         Shape::Mesh { filename, scale } => {
-            let path = meshes.find(filename, link)?;
+            let owner = format!("link '{link}'");
+            let path = meshes.find(filename, link).map_err(|error| error.of(&owner))?;
             let (vertices, triangles) = load_mesh(&path, scale.map_or([1.0; 3], |scale| *scale))
-                .map_err(|error| error.within(&format!("link '{link}'")))?;
+                .map_err(|error| error.within(&owner))?;
             Geometry::Mesh { vertices, triangles }
         }
     })

@@ -26,7 +26,8 @@ pub(super) fn child<'a, 'i>(node: Node<'a, 'i>, tag: &'static str) -> Option<Nod
 
 /// A link or joint as messages name it.
 pub(super) fn element(node: Node<'_, '_>) -> String {
-    format!("{} '{}'", node.tag_name().name(), node.attribute("name").unwrap_or_default())
+    let tag = node.tag_name().name();
+    node.attribute("name").map_or_else(|| format!("<{tag}>"), |name| format!("{tag} '{name}'"))
 }
 
 /// The rewritten text.
