@@ -6,8 +6,8 @@ use super::birth::{Births, PLACE};
 use super::columns::Columns;
 use crate::error::Result;
 use crate::posterior::memory::{filled, space};
-use crate::posterior::resampling::systematic;
-use crate::posterior::Clusters;
+use crate::posterior::resampling::{normalise, systematic};
+use crate::posterior::{Clusters, Evidence};
 
 /// Memory that one particle takes [bytes].
 const PARTICLE: usize = 2 * Columns::SIZE + Clusters::SIZE + PLACE + size_of::<f64>() + size_of::<u32>();
@@ -20,6 +20,7 @@ pub(super) struct Cloud {
     pub weights: Vec<f64>,
     /// Which particle each is a copy of.
     pub parents: Vec<u32>,
+    evidence: Evidence,
     spare: Columns,
 }
 
@@ -39,6 +40,7 @@ impl Cloud {
             particles: Columns::new(count)?,
             weights: filled(1.0 / count as f64, count)?,
             parents: filled(0, count)?,
+            evidence: Evidence::of(count),
             spare: Columns::new(count)?,
         })
     }
@@ -49,8 +51,16 @@ impl Cloud {
         self.level();
     }
 
+    /// Sets the weights from their logarithms; returns how many particles are effective, and the logarithm of the likelihood
+    /// of what was weighed, given all that was weighed before.
+    pub fn normalise(&mut self) -> (f64, f64) {
+        let weighed = normalise(&mut self.particles.log_weight, &mut self.weights);
+        (weighed.effective, self.evidence.take_in(&weighed))
+    }
+
     /// Gives all particles the same weight.
     pub fn level(&mut self) {
+        self.evidence = Evidence::of(self.particles.len());
         self.weights.fill(1.0 / self.particles.len() as f64);
     }
 

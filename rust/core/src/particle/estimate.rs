@@ -64,6 +64,7 @@ impl Event {
 /// let mut filter = ContactParticleFilter::new(Arc::new(Robot::example_arm()), options)?;
 /// let found = filter.update(&[0.4; 7], &[1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])?;
 /// assert!(found.estimate.contact.is_some() && found.effective_samples > 1.0);
+/// assert!(found.log_evidence > 0.0, "a contact is likelier than none");
 /// assert_eq!(found.updates, 1);
 /// # Ok::<(), contactsense::Error>(())
 /// ```
@@ -83,6 +84,9 @@ pub struct FilterEstimate {
     pub residual: f64,
     /// Effective number of particles before resampling; zero without contact.
     pub effective_samples: f64,
+    /// Logarithm of how many times as likely the torques of this update are under the particles, given the updates before,
+    /// as without a contact; both at the sharpness with which they were weighed. Of the Gaussian likelihood.
+    pub log_evidence: f64,
     /// Updates since the start or the last reset.
     pub updates: u64,
 }
@@ -96,6 +100,7 @@ impl FilterEstimate {
             explained: true,
             residual: 0.0,
             effective_samples: 0.0,
+            log_evidence: 0.0,
             updates: 0,
         }
     }
@@ -111,6 +116,7 @@ impl FilterEstimate {
     pub(super) fn clear(&mut self, event: Event) {
         self.estimate.clear();
         self.event = event;
-        (self.explained, self.residual, self.effective_samples) = (true, 0.0, 0.0);
+        (self.explained, self.residual) = (true, 0.0);
+        (self.effective_samples, self.log_evidence) = (0.0, 0.0);
     }
 }

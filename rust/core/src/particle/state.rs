@@ -22,7 +22,7 @@ use super::step_noise::StepNoise;
 use crate::detection::{is_over, Gate};
 use crate::error::Result;
 use crate::posterior::parallel::{Course, Pieces};
-use crate::posterior::resampling::{effective_share, normalise};
+use crate::posterior::resampling::effective_share;
 use crate::posterior::{Clusters, MOST_MODES};
 use crate::robot::Robot;
 use crate::torque::LEVEL;
@@ -220,7 +220,10 @@ impl FilterState {
         let work = |_: usize, mut slice: Slice<'_>| weighing.apply(&mut slice);
         let course = Course { threads: self.options.threads, stop: &self.stop };
         course.for_each(self.cloud.particles.slice(), 0, &work);
-        normalise(&mut self.cloud.particles.log_weight, &mut self.cloud.weights)
+        let (effective, evidence) = self.cloud.normalise();
+        // Without a contact all of the torque is noise.
+        self.found.log_evidence = evidence + 0.5 * self.instant.target.squared / weighing.variance;
+        effective
     }
 
     /// Share of particles that would be effective after a weighing.
@@ -250,8 +253,9 @@ impl FilterState {
         let error = left.moment(&self.instant) * self.adaptation.averaged();
         let Self { found, clusters, instant, check, robot, cloud, options, .. } = self;
         let sure = found.sure_within();
+        let log_evidence = found.log_evidence;
         found.clear(event);
-        found.effective_samples = effective;
+        (found.effective_samples, found.log_evidence) = (effective, log_evidence);
         found.estimate.set(clusters, &instant.frames, error);
         if options.motion != Motion::Curvature {
             found.estimate.forget_stiffness();

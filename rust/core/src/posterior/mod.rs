@@ -3,6 +3,7 @@
 mod clusters;
 mod contact_sample;
 mod estimate;
+mod evidence;
 pub(crate) mod memory;
 mod mode;
 mod moments;
@@ -12,4 +13,5 @@ pub(crate) mod resampling;
 pub(crate) use clusters::{Clusters, MOST_MODES};
 pub(crate) use contact_sample::{ContactSample, ContactSamples};
 pub use estimate::ContactEstimate;
+pub(crate) use evidence::Evidence;
 pub use mode::Mode;

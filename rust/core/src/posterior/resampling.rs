@@ -1,9 +1,11 @@
 //! Systematic resampling (Kitagawa 1996): a comb over the cumulated weights.
 
-/// Weights from their logarithms, summing to one; returns the effective sample size.
+use super::evidence::Weighed;
+
+/// Weights from their logarithms, summing to one.
 ///
 /// A logarithm that is no number is a weight of zero. All alike where no particle has a weight.
-pub(crate) fn normalise(log_weights: &mut [f64], weights: &mut [f64]) -> f64 {
+pub(crate) fn normalise(log_weights: &mut [f64], weights: &mut [f64]) -> Weighed {
     let mut greatest = f64::NEG_INFINITY;
     for log in log_weights.iter_mut() {
         *log = weightless(*log);
@@ -18,7 +20,7 @@ pub(crate) fn normalise(log_weights: &mut [f64], weights: &mut [f64]) -> f64 {
         let count = weights.len() as f64;
         weights.fill(1.0 / count);
         log_weights.fill(0.0);
-        return count;
+        return Weighed { effective: count, log_sum: f64::NEG_INFINITY, log_rest: count.ln() };
     }
     let mut squares = 0.0;
     for (weight, log) in weights.iter_mut().zip(log_weights.iter_mut()) {
@@ -26,7 +28,7 @@ pub(crate) fn normalise(log_weights: &mut [f64], weights: &mut [f64]) -> f64 {
         *log -= greatest;
         squares += *weight * *weight;
     }
-    1.0 / squares
+    Weighed { effective: 1.0 / squares, log_sum: greatest + sum.ln(), log_rest: sum.ln() }
 }
 
 /// A log-weight that is not a number, or infinite, is that of a weight of zero.
@@ -105,7 +107,7 @@ mod tests {
     fn a_log_weight_that_is_no_number_is_a_weight_of_zero() {
         let mut weights = [0.0; 4];
         let mut logs = [f64::NAN, 0.0, f64::INFINITY, 3f64.ln()];
-        let effective = normalise(&mut logs, &mut weights);
+        let effective = normalise(&mut logs, &mut weights).effective;
         assert!((weights[3] - 0.75).abs() < 1e-12 && weights[0] == 0.0 && weights[2] == 0.0, "{weights:?}");
         assert!((effective - 1.6).abs() < 1e-12);
         let share = effective_share(4, 1, |k| [f64::NAN, 0.0, f64::INFINITY, 3f64.ln()][k]);
@@ -116,11 +118,11 @@ mod tests {
     fn weights_are_normalised_whatever_their_size() {
         let mut logs = [-1e6, -1e6 + 2f64.ln(), f64::NEG_INFINITY];
         let mut weights = [0.0; 3];
-        let effective = normalise(&mut logs, &mut weights);
+        let effective = normalise(&mut logs, &mut weights).effective;
         assert!((weights[1] - 2.0 / 3.0).abs() < 1e-9 && weights[2] == 0.0);
         assert!((effective - 9.0 / 5.0).abs() < 1e-9);
         let mut none = [f64::NEG_INFINITY; 3];
-        assert_eq!(normalise(&mut none, &mut weights), 3.0);
+        assert_eq!(normalise(&mut none, &mut weights).effective, 3.0);
         assert_eq!(weights, [1.0 / 3.0; 3]);
     }
 }
