@@ -168,7 +168,7 @@ impl PyContactEstimate {
     }
 
     /// Whether a push by one obstacle that stays explains the torques at the last poses, 24 at most and each 5 mm from the one
-    /// before: what is left over is within four times the stated noise (a chi-square test at 99 %), and the force follows the
+    /// before: what is left over is within three times the stated noise (a chi-square test at 99 %), and the force follows the
     /// motion no less than on the softest obstacle of `stiffness_range` (another one at 99 %). Where not, the estimate is
     /// ambiguous, too: two contacts, a moment, a payload, a pull, or biased torques.
     #[getter]

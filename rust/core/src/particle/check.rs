@@ -14,7 +14,7 @@ use crate::math::chi_square::upper_limit;
 use crate::robot::Robot;
 
 /// Errors of torque may be so many times as large as is stated [1].
-const GRANTED: f64 = 4.0;
+const GRANTED: f64 = 3.0;
 /// Parameters of a push at one pose: its force and two coordinates on the surface; of an obstacle: its centre.
 const FITTED: usize = 3;
 const CENTRE: usize = 3;

@@ -75,7 +75,7 @@ pub struct FilterEstimate {
     pub estimate: ContactEstimate,
     /// What happened.
     pub event: Event,
-    /// Whether a push by one obstacle that stays explains the torques at the last poses: what is left over is within four
+    /// Whether a push by one obstacle that stays explains the torques at the last poses: what is left over is within three
     /// times the stated noise (a chi-square test at 99 %), and nothing shows that the force follows the motion less than on
     /// the softest obstacle sought. Where not, the contact is ambiguous, too.
     pub explained: bool,
