@@ -54,7 +54,7 @@ pub struct Particles {
 ///
 /// `likelihood`: "gaussian" (default; force and stiffness are integrated out) or "exponential" (eq. 5, both are drawn at
 /// random). `torque_noise`: standard deviation at rest, scalar or `(nv,)` [Nm], default 0.02; `relative_noise`: relative
-/// to the torque, default 0.03; a tenth of it also of the largest torque. `noise`: a `NoiseModel` in place of these two.
+/// to the torque, default 0.03. `noise`: a `NoiseModel` in place of these two.
 /// Greater noise is learnt from what is left over. `torque_threshold`: below it on every joint there is no contact, scalar
 /// or `(nv,)` [Nm], default three standard deviations at rest (0.06).
 ///

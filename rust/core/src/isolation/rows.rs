@@ -136,3 +136,25 @@ impl TorqueRows {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::torque::NoiseModel;
+
+    #[test]
+    fn tolerances_are_three_standard_deviations_of_the_one_noise_model() {
+        let robot = Robot::example_arm();
+        let kinematics = Kinematics::new(&robot);
+        let noise = NoiseModel { model: vec![0.3], relative: vec![0.07], ..NoiseModel::default() };
+        let noise = noise.of(&robot).expect("valid noise");
+        let torque = [0.0, -12.0, 3.0, 0.5, -0.2, 0.1, 0.0];
+        let mut rows = TorqueRows::new(&robot);
+        rows.set(&robot, &kinematics, &torque, &[0.0; 7], &noise.threshold(), Some(&noise));
+        let mut deviations = [0.0; 7];
+        noise.set_deviations(&torque, &mut deviations);
+        for (tolerance, deviation) in rows.tolerance.iter().zip(deviations) {
+            assert!((tolerance - LEVEL * deviation).abs() < 1e-12, "{tolerance} {deviation}");
+        }
+    }
+}

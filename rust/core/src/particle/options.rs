@@ -187,7 +187,7 @@ impl FilterOptions {
             Some(noise) => noise.of(robot),
             None => {
                 let torque = Self::per_joint(robot, "torque_noise", &self.torque_noise)?;
-                NoiseModel::short(torque, self.relative_noise).of(robot)
+                Ok(NoiseModel::short(torque, self.relative_noise).of(robot)?.without_coupling())
             }
         }
     }

@@ -82,7 +82,7 @@ impl NoiseModel {
         if at_rest.contains(&0.0) {
             return Err(Error::input("noise.torque", "must be positive where noise.model is zero"));
         }
-        Ok(TorqueNoise { at_rest, relative })
+        Ok(TorqueNoise { at_rest, relative, largest_share: LARGEST_SHARE })
     }
 }
 
@@ -91,9 +91,15 @@ impl NoiseModel {
 pub(crate) struct TorqueNoise {
     at_rest: Vec<f64>,
     relative: Vec<f64>,
+    largest_share: f64,
 }
 
 impl TorqueNoise {
+    /// The same where no joint errs by what another one feels.
+    pub fn without_coupling(self) -> Self {
+        TorqueNoise { largest_share: 0.0, ..self }
+    }
+
     /// Standard deviations where nothing touches (Nm).
     pub fn at_rest(&self) -> &[f64] {
         &self.at_rest
@@ -109,7 +115,7 @@ impl TorqueNoise {
     #[inline]
     pub fn growing(&self, k: usize, level: f64, torque: f64, largest: f64) -> f64 {
         let share = level * self.relative[k];
-        (share * torque).hypot(share * LARGEST_SHARE * largest)
+        (share * torque).hypot(share * self.largest_share * largest)
     }
 
     /// Sets the standard deviation of each torque (Nm).
