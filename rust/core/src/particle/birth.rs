@@ -93,17 +93,17 @@ impl Birth<'_> {
     /// Particle `number` of `count`, of which every place has as many as every other.
     pub fn evenly(&self, particles: &mut Slice<'_>, k: usize, number: usize, count: usize) {
         let place = (number as u128 * self.births.places() as u128 / count as u128) as usize;
-        self.bear(particles, k, number, place);
+        self.make(particles, k, number, place);
     }
 
     /// Particle `number`, at a place chosen at random.
     pub fn anywhere(&self, particles: &mut Slice<'_>, k: usize, number: usize) {
         let share = self.random.uniform(DRAWS * number as u64 + PLACE_DRAW);
-        self.bear(particles, k, number, (share * self.births.places() as f64) as usize);
+        self.make(particles, k, number, (share * self.births.places() as f64) as usize);
     }
 
     /// Makes particle k: near a place, in touch with an obstacle, with the force that explains the measured torque best.
-    fn bear(&self, particles: &mut Slice<'_>, k: usize, number: usize, place: usize) {
+    fn make(&self, particles: &mut Slice<'_>, k: usize, number: usize, place: usize) {
         let Births { places, spacing, log_stiffness, log_radius, sampled, .. } = self.births;
         let Some((link, at)) = places.get(place) else { return };
         let Some(surface) = self.robot.links()[*link as usize].surface.as_ref() else { return };

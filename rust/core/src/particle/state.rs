@@ -168,7 +168,7 @@ impl FilterState {
     /// Begins the search anew.
     fn spread(&mut self) {
         self.adaptation = Adaptation::default();
-        self.bear(0, true);
+        self.renew(0, true);
         self.clock.spread();
     }
 

@@ -42,7 +42,7 @@ impl FilterState {
             self.adaptation.apart(self.clusters.spread).max(slip)
         });
         self.rejuvenate(kept, apart, noise.point.is_some());
-        self.bear(kept, false);
+        self.renew(kept, false);
         self.cloud.level();
         kept
     }
@@ -68,7 +68,7 @@ impl FilterState {
     }
 
     /// Makes all particles behind the first ones anew, from the whole surface: evenly, or at random.
-    pub(super) fn bear(&mut self, kept: usize, evenly: bool) {
+    pub(super) fn renew(&mut self, kept: usize, evenly: bool) {
         let (response_model, random) = (self.response_model(), self.clock.stream());
         let Self { robot, instant, cloud, options, stop, .. } = self;
         let Cloud { births, particles, .. } = cloud;
