@@ -137,8 +137,8 @@ def test_a_push_on_an_outer_link_is_sure_after_few_poses(noise: float, which: An
         for q, torque in zip(run.q, run.external_torque, strict=True):
             estimate = tracker.update(q, torque * (1.0 + noise * generator.standard_normal(torque.size)))
             sure.append(not estimate.ambiguous)
-        # Motions of three updates each. Measured: sure by the thirteenth update, then at 83 % or more. Link 7 is told
-        # from link 6 by the seventh joint alone, which the tenth motion moves first.
+        # Motions of three updates each. Measured: sure by the thirteenth update, then at 83 % or more. Link 7
+        # is told from link 6 by the seventh joint alone, which the tenth motion moves first.
         soon = 33 if link == 7 else 18
         assert any(sure[:soon])
         assert np.mean(sure[soon:]) > 0.75
