@@ -3,6 +3,20 @@
 use super::columns::{Columns, Slice};
 use super::options::Likelihood;
 
+/// What particle k believes: of all particles, or of a slice of them.
+macro_rules! belief {
+    ($particles:expr, $k:expr) => {
+        Belief {
+            force: $particles.force[$k],
+            variance: $particles.force_variance[$k],
+            gain: $particles.gain[$k],
+            product: $particles.product[$k],
+            measured: $particles.measured[$k],
+            penalty: $particles.penalty[$k],
+        }
+    };
+}
+
 /// What a step of weighing needs to know.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Weighing {
@@ -31,14 +45,7 @@ impl Weighing {
     /// Weighs all particles and updates what they believe of the force.
     pub fn apply(&self, particles: &mut Slice<'_>) {
         for k in 0..particles.len() {
-            let belief = Belief {
-                force: particles.force[k],
-                variance: particles.force_variance[k],
-                gain: particles.gain[k],
-                product: particles.product[k],
-                measured: particles.measured[k],
-                penalty: particles.penalty[k],
-            };
+            let belief = belief!(particles, k);
             let posterior = self.posterior(&belief);
             particles.log_weight[k] += posterior.log_weight - belief.penalty;
             let change = posterior.force - belief.force;
@@ -108,14 +115,7 @@ pub(super) struct Belief {
 impl Belief {
     #[inline]
     pub fn of(particles: &Columns, k: usize) -> Self {
-        Belief {
-            force: particles.force[k],
-            variance: particles.force_variance[k],
-            gain: particles.gain[k],
-            product: particles.product[k],
-            measured: particles.measured[k],
-            penalty: particles.penalty[k],
-        }
+        belief!(particles, k)
     }
 }
 
