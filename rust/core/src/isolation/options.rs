@@ -30,6 +30,8 @@ const LOCATE_WITHIN: f64 = 0.05;
 pub struct IsolatorOptions {
     /// A torque is felt above it: per velocity variable, or one for all (Nm, N). None for three standard deviations of
     /// `noise` at rest.
+    // Without this a file that leaves it out would mean None.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "serde::Deserialize::deserialize"))]
     pub torque_threshold: Option<Vec<f64>>,
     /// Errors of the torques. None for a third of the thresholds, and a hundredth of the torque.
     pub noise: Option<NoiseModel>,
