@@ -36,8 +36,6 @@ const AMPLE: f64 = 0.25;
 /// The test, and what it found at the last update.
 #[derive(Debug, Clone)]
 pub(super) struct Check {
-    /// Stated standard deviation of each torque (Nm).
-    deviation: Vec<f64>,
     /// Torques that a push leaves over, one a velocity variable [Nm].
     left: Vec<f64>,
     window: Window,
@@ -57,7 +55,6 @@ impl Check {
         let springy = options.motion == Motion::Curvature && options.likelihood == Likelihood::Gaussian;
         Check {
             left: vec![0.0; robot.nv()],
-            deviation: vec![1.0; robot.nv()],
             window: Window::new(instant),
             search: springy.then(|| Search::new(robot.links().len(), robot.nv())),
             stiffness: options.stiffness_range,
@@ -117,10 +114,8 @@ impl Check {
 
     /// Squared norm of the torques that the best force of a push leaves over, each over its stated noise.
     fn left_over(&mut self, push: &Push<'_>) -> f64 {
-        let torque = &push.instant.torque;
         push.left_over(&mut self.left);
-        push.instant.noise.set_deviations(torque, &mut self.deviation);
-        self.left.iter().zip(&self.deviation).map(|(left, noise)| (left / noise).powi(2)).sum()
+        self.left.iter().zip(&push.instant.stated).map(|(left, noise)| (left / noise).powi(2)).sum()
     }
 
     /// Whether a single push explains the last poses.

@@ -68,8 +68,7 @@ impl Cloud {
     /// no use.
     pub fn copy(&mut self, kept: usize, offset: f64) {
         systematic(&self.weights, offset, &mut self.parents[..kept]);
-        self.parents[kept..].fill(0);
-        self.spare.gather(&self.particles, &self.parents);
+        self.spare.gather(&self.particles, &self.parents[..kept]);
         std::mem::swap(&mut self.particles, &mut self.spare);
         self.particles.log_weight[..kept].fill(0.0);
     }

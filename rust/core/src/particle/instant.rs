@@ -24,8 +24,9 @@ pub(super) struct Instant {
     pub noise: TorqueNoise,
     pub frames: Frames,
     pub target: Target,
-    /// The measured torque, one a velocity variable [Nm, N], and its standard deviation.
+    /// The measured torque, one a velocity variable [Nm, N], its stated standard deviation, and the one it is weighed with.
     pub torque: Vec<f64>,
+    pub stated: Vec<f64>,
     pub deviation: Vec<f64>,
     /// Whether a velocity variable is a rotation's.
     pub turning: Vec<bool>,
@@ -48,6 +49,7 @@ impl Instant {
             turning: turning(robot),
             target: Target::new(&frames),
             torque: vec![0.0; robot.nv()],
+            stated: vec![1.0; robot.nv()],
             deviation: vec![1.0; robot.nv()],
             extents: extents.collect(),
             frames,
@@ -58,8 +60,9 @@ impl Instant {
     pub fn update(&mut self, robot: &Robot, q: &[f64], torque: &[f64], weighed: bool) {
         self.stand();
         self.torque.copy_from_slice(torque);
+        self.noise.set_deviations(torque, &mut self.stated);
         if weighed {
-            self.noise.set_deviations(torque, &mut self.deviation);
+            self.deviation.copy_from_slice(&self.stated);
         } else {
             self.deviation.fill(1.0);
         }
