@@ -58,9 +58,9 @@ BAD_MODELS = {
         "joint 'j' has the type 'hinge'; supported: rev",
     ),
     "planar": (robot(AB, joint("j", "a", "b", "planar")), "joint 'j' has the type 'planar'; supported: rev"),
-    "floating": (
-        robot(AB, joint("j", "a", "b", "floating")),
-        "joint 'j' has the type 'floating'.*floating_base",
+    "floating inside": (
+        robot(AB, link("c"), joint("i", "a", "b"), joint("j", "b", "c", "floating")),
+        "joint 'j' floats inside the robot",
     ),
     "reserved name": (robot(AB, joint("universe", "a", "b")), "joint 'universe' has a name that Pinocchio"),
     "bad origin": (

@@ -9,11 +9,11 @@ import time
 
 import numpy as np
 import pytest
+from described import describe_urdf
 from robots import EXAMPLE_SHARE
 
 import contactsense as cs
 from contactsense import _core
-from contactsense.loading.describe_urdf import describe_urdf
 
 
 @pytest.fixture(scope="module")
@@ -94,7 +94,7 @@ def test_other_threads_run_while_a_robot_is_built(tmp_path):
     try:
         before = turns
         for _ in range(100):  # so that a busy machine finds the time for the thread
-            _core.Robot(described.name, described.joints, described.links, described.gravity, [])
+            _core.Robot(tuple(described))
             if turns > before:
                 break
         during = turns - before

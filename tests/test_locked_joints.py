@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pinocchio as pin
 import pytest
+from described import describe_urdf
 from urdf_text import ARM, joint, link, robot, write
 
 from contactsense.errors import InputError
-from contactsense.loading.describe_urdf import describe_urdf
 
 
 @pytest.fixture

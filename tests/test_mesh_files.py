@@ -5,19 +5,39 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from urdf_text import SOLID, link, robot, shape, write
+from described import describe_urdf
+from urdf_text import SOLID, joint, link, robot, shape, write
 
 from contactsense import Robot, _core
-from contactsense.errors import GeometryError, ModelError
-from contactsense.loading.describe_urdf import describe_urdf
+from contactsense.errors import GeometryError, InputError, ModelError
+
+FILES = ("arm/meshes/in.stl", "share/pkg/meshes/in.STL", "share/pkg/in.obj", "outside/secret.stl")
+FACES = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]
+CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
+
+
+def mesh_text(path: Path, size: float) -> str:
+    """A tetrahedron, by whose size a file is known."""
+    corners = size * CORNERS
+    if path.suffix == ".obj":
+        return "".join(f"v {x} {y} {z}\n" for x, y, z in corners) + "".join(
+            f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in FACES
+        )
+    facets = "".join(
+        "facet normal 0 0 0\nouter loop\n"
+        + "".join("vertex {} {} {}\n".format(*corners[i]) for i in face)
+        + "endloop\nendfacet\n"
+        for face in FACES
+    )
+    return f"solid part\n{facets}endsolid part\n"
 
 
 @pytest.fixture
 def site(tmp_path):
     """A URDF folder, a package folder and a file outside both."""
-    for name in ("arm/meshes/in.stl", "share/pkg/meshes/in.STL", "share/pkg/in.obj", "outside/secret.stl"):
+    for size, name in enumerate(FILES, start=1):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text("solid")
+        (tmp_path / name).write_text(mesh_text(tmp_path / name, size))
     return tmp_path
 
 
@@ -44,17 +64,49 @@ def load(site, filename, package_dirs=(), scale=None):
     ],
 )
 def test_file_is_found(site, filename, found):
-    shape = load(site, filename.format(site=site), [site / "share"], "1 -1 0.001")
-    path, scale = shape.params
-    assert (shape.kind, path) == ("mesh_file", str((site / found).resolve()))
-    np.testing.assert_array_equal(scale, [1, -1, 0.001])
+    shape = load(site, filename.format(site=site), [site / "share"], "1 -1 0.5")
+    vertices, _ = shape.params
+    assert shape.kind == "mesh"
+    np.testing.assert_allclose(np.ptp(vertices, axis=0), (FILES.index(found) + 1) * np.array([1, 1, 0.5]))
 
 
 def test_package_folder_may_be_the_package_itself(site):
     for package_dirs in ([str(site / "share" / "pkg")], str(site / "share" / "pkg"), site / "share"):
-        path, scale = load(site, "package://pkg/in.obj", package_dirs).params
-        assert path == str((site / "share/pkg/in.obj").resolve())
-        np.testing.assert_array_equal(scale, [1, 1, 1])
+        vertices, _ = load(site, "package://pkg/in.obj", package_dirs).params
+        np.testing.assert_allclose(np.ptp(vertices, axis=0), [3, 3, 3])
+
+
+@pytest.mark.parametrize("scheme", ["", "file://"])
+@pytest.mark.parametrize("read", [Robot.from_urdf, _core._robot_from_urdf], ids=["package", "core"])
+def test_path_of_another_machine_is_found_by_its_end(site, read, scheme):
+    # Two files of that name: the one whose path agrees over more folders is taken.
+    (site / "share/other/meshes").mkdir(parents=True)
+    (site / "share/other/meshes/in.STL").write_text(mesh_text(Path("in.STL"), 9))
+    mesh = f'<mesh filename="{scheme}/home/somebody/ws/src/pkg/meshes/in.STL"/>'
+    urdf = write(site / "arm", robot(link("a", SOLID + shape(mesh))))
+    found = read(urdf, package_dirs=[site / "share"])
+    assert found.surface("a").area == pytest.approx(4 * (1.5 + np.sqrt(0.75)))
+    (warning,) = [text for text in found.warnings if "in.STL" in text]
+    assert str(site / "share/pkg/meshes/in.STL") in warning
+    # Never a file outside, by whatever path.
+    outside = write(site / "arm", robot(link("a", SOLID + shape(mesh.replace("in.STL", "secret.stl")))))
+    with pytest.raises(GeometryError, match=r"secret.stl"):
+        read(outside, package_dirs=[site / "share"])
+
+
+@pytest.mark.parametrize("read", [Robot.from_urdf, _core._robot_from_urdf], ids=["package", "core"])
+def test_missing_mesh_may_be_left_out(site, read):
+    body = shape('<mesh filename="package://nowhere/none.stl"/>')
+    urdf = write(site / "arm", robot(link("a", SOLID + body), link("b", SOLID + body + shape('<sphere radius="1"/>')))
+                 .replace("</robot>", joint("j", "a", "b") + "</robot>"))  # fmt: skip
+    with pytest.raises(GeometryError, match=r"link 'a'.*none.stl"):
+        read(urdf)
+    found = read(urdf, missing_meshes="warn")
+    assert found.link_names == ("b",)
+    missing = [text for text in found.warnings if "none.stl" in text]
+    assert [text.split(":")[0] for text in missing] == ["link 'a'", "link 'b'"]
+    with pytest.raises(InputError, match="missing_meshes: must be 'error' or 'warn', not 'ignore'"):
+        read(urdf, missing_meshes="ignore")
 
 
 @pytest.mark.parametrize(
@@ -65,7 +117,6 @@ def test_package_folder_may_be_the_package_itself(site):
         "file://{site}/outside/secret.stl",
         "package://../outside/secret.stl",
         "package://pkg/../../outside/secret.stl",
-        "package://pkg/{site}/outside/secret.stl",
         "meshes/link.stl",
         "meshes/folder/secret.stl",
         "../outside/none.stl",
@@ -88,6 +139,8 @@ def test_missing_file_says_where_it_was_looked_for(site):
         load(site, "package://pkg/none.stl", [site / "share"])
     with pytest.raises(GeometryError, match=r"mesh 'meshes/none.stl' was not found.*arm/meshes/none.stl"):
         load(site, "meshes/none.stl")
+    with pytest.raises(GeometryError, match="was not found"):
+        load(site, f"package://pkg/{site}/outside/secret.stl", [site / "share"])
     (site / "arm/folder.stl").mkdir()
     with pytest.raises(GeometryError, match="was not found"):
         load(site, "folder.stl")

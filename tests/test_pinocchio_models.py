@@ -4,12 +4,13 @@ import coal
 import numpy as np
 import pinocchio as pin
 import pytest
+from described import describe_urdf
 from robots import PACKAGE_DIRS, PUBLISHED
 from urdf_text import ARM, joint, link, robot, shape
 
+import contactsense as cs
 from contactsense.errors import GeometryError, InputError, ModelError
 from contactsense.loading.describe_pinocchio import describe_pinocchio
-from contactsense.loading.describe_urdf import describe_urdf
 
 TETRAHEDRON = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
 FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
@@ -224,7 +225,7 @@ def test_free_flyer_is_only_for_the_root():
     [
         ({"mass": -1.0}, "joint 'shoulder'.*mass must not be negative"),
         ({"inertia": -np.eye(3)}, "joint 'shoulder'.*negative principal moment"),
-        ({"lever": np.array([np.nan, 0, 0])}, "joint 'shoulder'.*not finite"),
+        ({"lever": np.array([np.nan, 0, 0])}, "joint 'shoulder'.*must be finite"),
     ],
 )
 def test_impossible_body_is_refused(change, message):
@@ -232,7 +233,19 @@ def test_impossible_body_is_refused(change, message):
     for attribute, value in change.items():
         setattr(model.inertias[1], attribute, value)
     with pytest.raises(ModelError, match=message):
-        describe_pinocchio(model, pin.GeometryModel())
+        cs.Robot.from_pinocchio(model, pin.GeometryModel())
+
+
+def test_placement_that_is_not_rigid_is_refused():
+    model = arm()
+    model.jointPlacements[1] = pin.SE3(1.01 * np.eye(3), np.zeros(3))
+    with pytest.raises(ModelError, match=r"joint 'shoulder'.*rotation.*off orthonormal"):
+        cs.Robot.from_pinocchio(model, pin.GeometryModel())
+    mirror = pin.SE3(np.diag([1.0, 1.0, -1.0]), np.zeros(3))
+    geometry = pin.GeometryModel()
+    geometry.addGeometryObject(geometry_object(coal.Sphere(0.1), placement=mirror))
+    with pytest.raises(ModelError, match=r"link 'upper'.*determinant"):
+        cs.Robot.from_pinocchio(arm(), geometry)
 
 
 def test_axes_of_every_joint_model_agree_with_the_urdf(tmp_path):

@@ -25,7 +25,7 @@ STATES = 3
 
 def load_both(path: Path, locked=None, **options):
     """The robot of either reader, or what it raised."""
-    pairs = list(locked.items()) if isinstance(locked, dict) else [(name, None) for name in locked or ()]
+    pairs = list(locked.items()) if isinstance(locked, dict) else [(name, 0.0) for name in locked or ()]
 
     def attempt(load, **more):
         try:
@@ -169,13 +169,13 @@ def test_missing_file_is_named(file, tmp_path):
 @pytest.mark.parametrize(
     "body",
     [
-        '<box size="0.1 0 0.1"/>',
+        '<box size="0.1 -1 0.1"/>',
         '<box size="0.1 0.1"/>',
         "<box/>",
         '<sphere radius="-1"/>',
         '<sphere radius="nan"/>',
         '<cylinder radius="1"/>',
-        '<capsule radius="1" length="0"/>',
+        '<capsule radius="1" length="-1"/>',
         '<cone radius="1" length="1"/>',
         '<box size="1 1 1"/><box size="1 1 1"/>',
         "",

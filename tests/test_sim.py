@@ -13,9 +13,9 @@ import pytest
 pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install contactsense[sim]")
 
 import mujoco
+from described import describe_urdf
 
 from contactsense.errors import InputError, ModelError
-from contactsense.loading.describe_urdf import describe_urdf
 from contactsense.sim import (
     Coordinates,
     SimulatedRobot,

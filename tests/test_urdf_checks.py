@@ -6,12 +6,12 @@ import re
 import numpy as np
 import pytest
 from bad_models import AB, BAD_MODELS, LIMIT, inertial
+from described import describe_urdf
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from urdf_text import ARM, SOLID, joint, link, robot, shape, write
 
 from contactsense.errors import ContactSenseError, GeometryError, InputError, ModelError
-from contactsense.loading.describe_urdf import describe_urdf
 from contactsense.loading.description import RobotDescription
 
 
@@ -74,13 +74,13 @@ def test_name_of_the_floating_base_joint_is_reserved(tmp_path):
 @pytest.mark.parametrize(
     ("body", "message"),
     [
-        ('<box size="0.1 0 0.1"/>', "link 'a'.*<box> must be positive"),
+        ('<box size="0.1 -1 0.1"/>', "link 'a'.*<box> must be positive"),
         ('<box size="0.1 0.1"/>', "link 'a'.*3 finite numbers"),
         ("<box/>", "link 'a'.*'size'"),
         ('<sphere radius="-1"/>', "link 'a'.*<sphere> must be positive"),
         ('<sphere radius="nan"/>', "link 'a'.*'radius'"),
         ('<cylinder radius="1"/>', "link 'a'.*needs the attribute 'length'"),
-        ('<capsule radius="1" length="0"/>', "link 'a'.*<capsule> must be positive"),
+        ('<capsule radius="1" length="-1"/>', "link 'a'.*<capsule> must be positive"),
         ('<cone radius="1" length="1"/>', "link 'a'.*unknown shape <cone>; supported: mesh, box"),
         ("", "link 'a'.*needs one <geometry>"),
         ("<mesh/>", "link 'a'.*'filename'"),
@@ -99,8 +99,8 @@ def test_bad_shape_is_refused_by_link(body, message, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"geometry": "both"}, "'collision' or 'visual'"),
-        ({"geometry": None}, "'collision' or 'visual'"),
+        ({"geometry": "both"}, "'collision', 'visual' or 'collision_or_visual', not 'both'"),
+        ({"geometry": None}, "geometry: must be a string"),
         ({"gravity": (0, 0)}, "gravity: must be 3"),
         ({"gravity": (0, 0, math.nan)}, "gravity: must be 3"),
         ({"gravity": "down"}, "gravity: must be 3"),
@@ -145,7 +145,7 @@ def test_mimic_joints_stay_independent_with_one_warning(tmp_path):
     ("body", "warning"),
     [
         (link("b", inertial(ixx="5")) + joint("j", "a", "b"), "no rigid body has.*'b'"),
-        (link("b", "") + joint("j", "a", "b"), "no <inertial>.*'b'"),
+        (link("b", "") + joint("j", "a", "b"), "have no mass.*'b'"),
         (link("b", "") + joint("j", "a", "b"), "mass matrix is singular.*'j'"),
         (
             link("b", inertial("0", ixx="0", iyy="0", izz="0")) + joint("j", "a", "b"),
@@ -215,4 +215,4 @@ def test_cut_text_raises_nothing_but_our_errors(start, length, tmp_path):
 def test_zero_mass_is_warned_of(tmp_path):
     text = robot(link("a"), link("b", inertial("0")), joint("j", "a", "b"))
     warnings = describe_urdf(write(tmp_path, text)).warnings
-    assert "These links move with a joint but have zero mass (used as given): 'b'" in warnings
+    assert "These links move with a joint but have no mass (used as given): 'b'" in warnings

@@ -1,24 +1,24 @@
-"""Collision geometry of Pinocchio (coal) as plain numbers and arrays."""
+"""Collision geometry of Pinocchio (coal) as plain numbers and arrays, and back."""
 
 from __future__ import annotations
 
 from typing import Any
 
+import coal
 import numpy as np
 
 from ..errors import GeometryError
-from .description import GeometryKind
+from .description import Shape
 
 _SUPPORTED = "triangle meshes (BVHModel), Convex, Box, Cylinder, Sphere, Capsule"
 
 
-def shape_of(geometry: Any, name: str, mirrored: bool = False) -> tuple[GeometryKind, tuple[Any, ...]]:
+def shape_of(geometry: Any, name: str, mirrored: bool = False) -> Shape:
     """Kind and parameters of a coal geometry; `GeometryError` with the object's name where not supported.
 
     `mirrored`: the mesh file was scaled by a negative factor, which turned its triangles inside out.
     """
     owner = f"geometry object '{name}'"
-    # By name, so that the module which defines the classes (coal, earlier hppfcl) need not be known.
     kind = type(geometry).__name__
     if kind.startswith("BVHModel"):
         count = int(geometry.num_tris)
@@ -39,9 +39,21 @@ def shape_of(geometry: Any, name: str, mirrored: bool = False) -> tuple[Geometry
     raise GeometryError(f"{owner} is a {kind}; supported: {_SUPPORTED}")
 
 
-def _mesh(
-    vertices: Any, faces: list[Any], mirrored: bool, owner: str
-) -> tuple[GeometryKind, tuple[Any, ...]]:
+def geometry_of(shape: Shape) -> Any:
+    """The coal geometry of a mesh or a capsule."""
+    kind, params = shape
+    if kind == "capsule":
+        return coal.Capsule(*params)
+    vertices, triangles = params
+    mesh = coal.BVHModelOBBRSS()
+    mesh.beginModel(len(triangles), len(vertices))
+    mesh.addVertices(vertices)
+    mesh.addTriangles(triangles.astype(np.int64))
+    mesh.endModel()
+    return mesh
+
+
+def _mesh(vertices: Any, faces: list[Any], mirrored: bool, owner: str) -> Shape:
     points = np.array(vertices, dtype=np.float64).reshape(-1, 3)
     if not faces:
         raise GeometryError(f"{owner} has no triangles")

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ModelError
-
 FloatArray: TypeAlias = NDArray[np.float64]
 JointKind: TypeAlias = Literal["free_flyer", "revolute", "continuous", "prismatic"]
-GeometryKind: TypeAlias = Literal["mesh_file", "mesh", "box", "cylinder", "sphere", "capsule"]
-
-SUPPORTED_JOINTS = "revolute, continuous, prismatic, fixed, and a free flyer as the root"
+GeometryKind: TypeAlias = Literal["mesh", "box", "cylinder", "sphere", "capsule"]
+# Kind and parameters of a shape: "mesh" (vertices (n, 3), triangles (m, 3) uint32); "box" (x, y, z), full
+# extents; "cylinder" (radius, length); "sphere" (radius,); "capsule" (radius, length of the cylindrical part).
+# Cylinders and capsules lie along their z axis.
+Shape: TypeAlias = tuple[GeometryKind, tuple[Any, ...]]
 
 
 class JointTuple(NamedTuple):
@@ -35,13 +34,7 @@ class JointTuple(NamedTuple):
 
 
 class GeometryTuple(NamedTuple):
-    """A shape of a link.
-
-    `params` by `kind`: "mesh_file" (path, scale (3,)); "mesh" (vertices (n, 3), triangles (m, 3) uint32);
-    "box" (x, y, z), full extents; "cylinder" (radius, length); "sphere" (radius,);
-    "capsule" (radius, length of the cylindrical part). Cylinders and capsules lie along their z axis.
-    A scale may be negative: the file's mesh is then mirrored, and with a negative product turned inside out.
-    """
+    """A shape of a link."""
 
     kind: GeometryKind
     params: tuple[Any, ...]
@@ -61,9 +54,8 @@ class LinkTuple(NamedTuple):
     geometry: list[GeometryTuple]
 
 
-@dataclass(frozen=True)
-class RobotDescription:
-    """A checked robot: joints in the order of Pinocchio's model, links depth-first."""
+class RobotDescription(NamedTuple):
+    """A robot for the core, which checks it: joints in the order of Pinocchio's model, links depth-first."""
 
     name: str
     joints: list[JointTuple]
@@ -72,23 +64,7 @@ class RobotDescription:
     warnings: list[str]
 
 
-def check_finite(joints: list[JointTuple], links: list[LinkTuple]) -> None:
-    """`ModelError` where a placement or inertia is not finite: finite numbers can overflow when composed."""
-    for joint in joints:
-        _require_finite(f"joint '{joint.name}'", *joint[3:9])
-    for link in links:
-        own = (link.placement, link.mass, link.com, link.inertia)
-        _require_finite(f"link '{link.name}'", *own, *(shape.placement for shape in link.geometry))
-
-
 def name_list(names: list[str], limit: int = 12) -> str:
     """Names for a message, quoted; a long list is cut and says by how many."""
     shown = ", ".join(f"'{name}'" for name in names[:limit])
     return shown if len(names) <= limit else f"{shown} and {len(names) - limit} more"
-
-
-def _require_finite(owner: str, *values: float | FloatArray) -> None:
-    if not all(np.isfinite(value).all() for value in values):
-        raise ModelError(
-            f"{owner}: its placement or inertia is not finite; check the magnitudes in the description"
-        )

@@ -47,16 +47,19 @@ def link_inertias(model: Any, parents: list[int | None], is_body: IsBody) -> dic
         parents[index]: index for index, frame in reversed(list(enumerate(model.frames))) if is_body(frame)
     }
     own = {index: np.zeros(10) for index, frame in enumerate(model.frames) if is_body(frame)}
-    # Of each (formerly) moving body: what it weighs in all, and its links.
-    rest = {-joint: _parameters(model.inertias[joint]) for joint in range(1, model.njoints)}
+    # Of each (formerly) moving body, and of the world: what it weighs in all, and its links. Older versions of
+    # Pinocchio do not know what the world weighs.
+    rest = {~joint: _parameters(model.inertias[joint]) for joint in range(model.njoints)}
+    if not rest[~0].any():
+        del rest[~0]
     heads: dict[int, int] = {}
     for index, frame in enumerate(model.frames):
         group = _group(model, parents, index)
         parameters = _parameters(frame.placement.act(frame.inertia))
         if index == group:
             rest[group] = parameters
-            if -int(frame.parentJoint) in rest:
-                rest[-int(frame.parentJoint)] -= parameters
+            if ~int(frame.parentJoint) in rest:
+                rest[~int(frame.parentJoint)] -= parameters
             continue
         link = index if is_body(frame) else carried.get(index)
         if is_body(frame):
@@ -75,14 +78,14 @@ def link_inertias(model: Any, parents: list[int | None], is_body: IsBody) -> dic
 
 
 def _group(model: Any, parents: list[int | None], index: int) -> int:
-    """The locked joint's frame at or above a frame on its body, else minus the joint's number."""
+    """The locked joint's frame at or above a frame on its body, else the complement of the joint's number."""
     joint = model.frames[index].parentJoint
     above: int | None = index
     while above is not None and model.frames[above].parentJoint == joint:
         if is_locked(model, above):
             return above
         above = parents[above]
-    return -int(joint)
+    return ~int(joint)
 
 
 def _parameters(inertia: Any) -> FloatArray:

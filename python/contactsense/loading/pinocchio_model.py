@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import ModelError
-from .description import SUPPORTED_JOINTS, FloatArray, JointKind, JointTuple
+from .description import FloatArray, JointKind, JointTuple
 
 _KINDS: dict[str, JointKind] = {
     "JointModelFreeFlyer": "free_flyer",
@@ -17,6 +17,8 @@ _KINDS: dict[str, JointKind] = {
     "JointModelRevoluteUnboundedUnaligned": "continuous",
     **dict.fromkeys([f"JointModelP{axis}" for axis in ("X", "Y", "Z", "rismaticUnaligned")], "prismatic"),
 }
+
+_SUPPORTED = "revolute, continuous, prismatic, fixed, and a free flyer as the root"
 
 # Pinocchio writes "unlimited" as the largest float.
 _UNLIMITED = 1e300
@@ -35,7 +37,7 @@ def _joint(model: Any, index: int) -> JointTuple:
     joint, name = model.joints[index], str(model.names[index])
     kind = _KINDS.get(joint.shortname())
     if kind is None:
-        raise ModelError(f"joint '{name}' is a {joint.shortname()}; supported: {SUPPORTED_JOINTS}")
+        raise ModelError(f"joint '{name}' is a {joint.shortname()}; supported: {_SUPPORTED}")
     if kind == "free_flyer" and (index != 1 or model.parents[1] != 0):
         raise ModelError(
             f"joint '{name}' is a free flyer inside the robot; a free flyer can only be the root joint"

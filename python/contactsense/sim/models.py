@@ -10,8 +10,7 @@ from pathlib import Path
 import pinocchio as pin
 
 from contactsense.errors import ModelError
-from contactsense.loading.describe_urdf import describe_urdf
-from contactsense.robot import description_file
+from contactsense.robot import Robot, description_file
 
 from .geoms import Geom, geoms_of
 
@@ -38,9 +37,7 @@ def named_model(name: str) -> pin.Model:
 
 def named_geoms(name: str, *, contype: int = 0, conaffinity: int = 0) -> tuple[Geom, ...]:
     """The shapes of a robot described in this package; masks as in `geoms_of`."""
-    with resources.as_file(description_file(name)) as path:
-        links = describe_urdf(path, floating_base=_FLOATING[name]).links
-    return geoms_of(links, contype=contype, conaffinity=conaffinity)
+    return geoms_of(Robot.named(name)._description.links, contype=contype, conaffinity=conaffinity)
 
 
 def _model(text: str, floating_base: bool) -> pin.Model:

@@ -1,8 +1,5 @@
 //! The loaders' plain tuples as the core's description.
 
-use std::path::PathBuf;
-
-use contactsense::load::load_mesh;
 use contactsense::robot::{
     BodyIndex, JointDescription, JointKind, LinkDescription, LinkIndex, RobotDescription,
 };
@@ -17,38 +14,8 @@ use pyo3::types::PyTuple;
 use crate::arrays::{rows, Vector};
 use crate::errors::{input, to_python};
 
-struct MeshFile {
-    path: PathBuf,
-    scale: [f64; 3],
-}
-
-/// A description whose mesh files are not read yet.
-pub struct Draft {
-    description: RobotDescription,
-    /// Of each part of each link.
-    files: Vec<Vec<Option<MeshFile>>>,
-}
-
-impl Draft {
-    /// Reads the mesh files; needs no Python.
-    pub fn load(mut self) -> contactsense::Result<RobotDescription> {
-        for (link, files) in self.description.links.iter_mut().zip(self.files) {
-            for (part, file) in link.geometry.iter_mut().zip(files) {
-                let Some(MeshFile { path, scale }) = file else { continue };
-                let (vertices, triangles) = load_mesh(&path, scale)
-                    .map_err(|error| error.within(&format!("link '{}'", link.name)))?;
-                part.geometry = Geometry::Mesh { vertices, triangles };
-            }
-        }
-        Ok(self.description)
-    }
-}
-
-fn vector(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vector3<f64>> {
-    Ok(Vector3::from(Vector::new(name, object)?.fixed::<3>(object.py(), name)?))
-}
-
-fn square(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Matrix3<f64>> {
+/// A `(3, 3)` matrix.
+pub fn square(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Matrix3<f64>> {
     match rows::<3>(name, object)?.as_slice() {
         [a, b, c] => Ok(Matrix3::from_row_slice(&[*a, *b, *c].concat())),
         _ => Err(input(object.py(), format!("{name}: expected an array of shape (3, 3)"))),
@@ -72,33 +39,44 @@ fn kind(py: Python<'_>, name: &str) -> PyResult<JointKind> {
     found.ok_or_else(|| input(py, format!("joints: unknown kind '{name}'")))
 }
 
+/// Numbers of a loader's array, which the core checks.
+fn numbers<const N: usize>(name: &str, array: &Bound<'_, PyAny>) -> PyResult<[f64; N]> {
+    Vector::new(name, &array.call_method0("ravel")?)?.fixed(array.py(), name)
+}
+
+fn pose(array: &Bound<'_, PyAny>) -> PyResult<Pose> {
+    let [a, b, c, x, d, e, f, y, g, h, i, z, ..] = numbers::<16>("placement", array)?;
+    Ok(Pose { rotation: Matrix3::new(a, b, c, d, e, f, g, h, i), translation: Vector3::new(x, y, z) })
+}
+
 fn joint(tuple: &Bound<'_, PyTuple>) -> PyResult<JointDescription> {
     let py = tuple.py();
     Ok(JointDescription {
         name: tuple.get_item(0)?.extract()?,
         parent: BodyIndex::new(tuple.get_item(1)?.extract()?),
         kind: kind(py, &tuple.get_item(2)?.extract::<String>()?)?,
-        axis: vector("axis", &tuple.get_item(3)?)?,
-        placement: placement("placement", &tuple.get_item(4)?)?,
+        axis: numbers("axis", &tuple.get_item(3)?)?.into(),
+        placement: pose(&tuple.get_item(4)?)?,
         mass: tuple.get_item(5)?.extract()?,
-        com: vector("com", &tuple.get_item(6)?)?,
-        inertia: square("inertia", &tuple.get_item(7)?)?,
+        com: numbers("com", &tuple.get_item(6)?)?.into(),
+        inertia: Matrix3::from_row_slice(&numbers::<9>("inertia", &tuple.get_item(7)?)?),
         armature: tuple.get_item(8)?.extract()?,
+        lower: limit(&tuple.get_item(9)?)?,
+        upper: limit(&tuple.get_item(10)?)?,
+        effort: limit(&tuple.get_item(11)?)?,
     })
 }
 
-fn part(tuple: &Bound<'_, PyTuple>) -> PyResult<(Part, Option<MeshFile>)> {
+/// None where it is infinite.
+fn limit(value: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    Ok(Some(value.extract::<f64>()?).filter(|value| !value.is_infinite()))
+}
+
+fn part(tuple: &Bound<'_, PyTuple>) -> PyResult<Part> {
     let py = tuple.py();
-    let mut file = None;
     let kind: String = tuple.get_item(0)?.extract()?;
     let sizes = tuple.get_item(1)?;
     let geometry = match kind.as_str() {
-        "mesh_file" => {
-            let (path, scale): (PathBuf, [f64; 3]) = sizes.extract()?;
-            file = Some(MeshFile { path, scale });
-            // Filled in by `Draft::load`.
-            Geometry::Mesh { vertices: vec![], triangles: vec![] }
-        }
         "mesh" => {
             let vertices = rows::<3>("vertices", &sizes.get_item(0)?)?;
             let triangles = sizes.get_item(1)?;
@@ -127,53 +105,40 @@ fn part(tuple: &Bound<'_, PyTuple>) -> PyResult<(Part, Option<MeshFile>)> {
         }
         other => return Err(to_python(py, Error::geometry(format!("unknown geometry kind '{other}'")))),
     };
-    Ok((Part { geometry, pose: placement("placement", &tuple.get_item(2)?)? }, file))
+    Ok(Part { geometry, pose: pose(&tuple.get_item(2)?)? })
 }
 
-fn link(tuple: &Bound<'_, PyTuple>) -> PyResult<(LinkDescription, Vec<Option<MeshFile>>)> {
-    let name: String = tuple.get_item(0)?.extract()?;
-    let (mut geometry, mut files) = (vec![], vec![]);
+fn link(tuple: &Bound<'_, PyTuple>) -> PyResult<LinkDescription> {
+    let mut geometry = vec![];
     for item in tuple.get_item(7)?.try_iter()? {
-        let (part, file) = part(item?.cast::<PyTuple>()?)?;
-        geometry.push(part);
-        files.push(file);
+        geometry.push(part(item?.cast::<PyTuple>()?)?);
     }
-    let link = LinkDescription {
+    Ok(LinkDescription {
+        name: tuple.get_item(0)?.extract()?,
         body: BodyIndex::new(tuple.get_item(1)?.extract()?),
-        placement: placement("placement", &tuple.get_item(2)?)?,
+        placement: pose(&tuple.get_item(2)?)?,
         parent: tuple.get_item(3)?.extract::<Option<usize>>()?.map(LinkIndex::new),
         mass: tuple.get_item(4)?.extract()?,
-        com: vector("com", &tuple.get_item(5)?)?,
-        inertia: square("inertia", &tuple.get_item(6)?)?,
+        com: numbers("com", &tuple.get_item(5)?)?.into(),
+        inertia: Matrix3::from_row_slice(&numbers::<9>("inertia", &tuple.get_item(6)?)?),
         geometry,
-        name,
-    };
-    Ok((link, files))
+    })
 }
 
 /// A description of the loaders' tuples (`contactsense.loading.description` says what they hold).
-pub fn description(
-    name: String,
-    joints: &Bound<'_, PyAny>,
-    links: &Bound<'_, PyAny>,
-    gravity: &Bound<'_, PyAny>,
-    warnings: Vec<String>,
-) -> PyResult<Draft> {
-    let mut files = vec![];
-    let mut description = RobotDescription {
-        name,
-        joints: vec![],
-        links: vec![],
-        gravity: vector("gravity", gravity)?,
-        warnings,
-    };
-    for item in joints.try_iter()? {
-        description.joints.push(joint(item?.cast::<PyTuple>()?)?);
+pub fn description(tuple: &Bound<'_, PyTuple>) -> PyResult<RobotDescription> {
+    let (mut joints, mut links) = (vec![], vec![]);
+    for item in tuple.get_item(1)?.try_iter()? {
+        joints.push(joint(item?.cast::<PyTuple>()?)?);
     }
-    for item in links.try_iter()? {
-        let (link, of_parts) = link(item?.cast::<PyTuple>()?)?;
-        description.links.push(link);
-        files.push(of_parts);
+    for item in tuple.get_item(2)?.try_iter()? {
+        links.push(link(item?.cast::<PyTuple>()?)?);
     }
-    Ok(Draft { description, files })
+    Ok(RobotDescription {
+        name: tuple.get_item(0)?.extract()?,
+        joints,
+        links,
+        gravity: numbers("gravity", &tuple.get_item(3)?)?.into(),
+        warnings: tuple.get_item(4)?.extract()?,
+    })
 }

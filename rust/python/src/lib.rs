@@ -27,6 +27,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("build_profile", if cfg!(debug_assertions) { "debug" } else { "release" })?;
     errors::register(module)?;
+    module.add_function(wrap_pyfunction!(urdf::_checked_urdf, module)?)?;
     module.add_function(wrap_pyfunction!(urdf::_robot_from_urdf, module)?)?;
     module.add_class::<robot::PyRobot>()?;
     module.add_class::<surface::PySurface>()?;

@@ -3,13 +3,15 @@
 use std::sync::Arc;
 
 use contactsense::robot::{LinkIndex, Robot};
-use numpy::{PyArray1, PyArray2};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+use numpy::ndarray::Dimension;
+use numpy::{PyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyMapping, PyTuple};
 
-use crate::arguments::text;
+use crate::arguments::{text, whole};
 use crate::arrays::Vector;
-use crate::description::description;
+use crate::description::{description as read_description, placement, square};
 use crate::errors::{detached, input, to_python};
 use crate::returned::{matrix, pose};
 use crate::surface::PySurface;
@@ -27,17 +29,17 @@ impl PyRobot {
 
 #[pymethods]
 impl PyRobot {
+    /// From a loader's description, or the same robot once more.
     #[new]
-    fn new(
-        py: Python<'_>,
-        name: String,
-        joints: &Bound<'_, PyAny>,
-        links: &Bound<'_, PyAny>,
-        gravity: &Bound<'_, PyAny>,
-        warnings: Vec<String>,
-    ) -> PyResult<Self> {
-        let description = description(name, joints, links, gravity, warnings)?;
-        let robot = detached(py, || description.load().and_then(Robot::new))?;
+    fn new(py: Python<'_>, description: &Bound<'_, PyAny>) -> PyResult<Self> {
+        if let Ok(robot) = description.cast::<PyRobot>() {
+            return Ok(Self(robot.get().0.clone()));
+        }
+        let given = description.cast::<PyTuple>().map_err(|_| {
+            input(py, "use Robot.from_urdf, Robot.from_pinocchio or Robot.named to make a robot".into())
+        })?;
+        let description = read_description(given)?;
+        let robot = detached(py, || Robot::new(description))?;
         Ok(Self(Arc::new(robot.map_err(|error| to_python(py, error))?)))
     }
 
@@ -81,6 +83,147 @@ impl PyRobot {
     #[getter]
     fn link_names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.0.touchable_links().iter().map(|link| &self.0[*link].name))
+    }
+
+    /// Names of all links, also those without a surface.
+    #[getter]
+    fn all_link_names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.0.links().iter().map(|link| &link.name))
+    }
+
+    /// Names of the joints that an actuator can move: all but a floating base's.
+    #[getter]
+    fn actuated_joint_names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.0.actuated_joint_names())
+    }
+
+    /// Mass of all that moves [kg].
+    #[getter]
+    fn mass(&self) -> f64 {
+        self.0.mass()
+    }
+
+    /// Gravity, `(3,)`, world frame [m/s^2].
+    #[getter]
+    fn gravity<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        read_only(PyArray1::from_slice(py, self.0.gravity().as_slice()))
+    }
+
+    /// Smallest and largest value of each configuration variable, `(nq, 2)` [rad or m]; infinite where there is none.
+    ///
+    /// The (cos, sin) pairs of continuous joints and the pose of a floating base have none.
+    #[getter]
+    fn position_limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let limits = self.0.position_limits();
+        Ok(read_only(PyArray1::from_slice(py, limits.as_flattened()).reshape([limits.len(), 2])?))
+    }
+
+    /// Largest effort of each velocity variable, `(nv,)` [Nm or N]; infinite where there is no limit, zero for a
+    /// floating base, which no actuator moves.
+    #[getter]
+    fn effort_limits<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        read_only(PyArray1::from_vec(py, self.0.effort_limits()))
+    }
+
+    /// A configuration, `(nq,)`, from joint positions by name in any order; joints that are not named are neutral.
+    ///
+    /// Args:
+    ///     positions: `{joint: position}` [rad; m for sliding joints]; continuous joints take their angle.
+    ///     base: pose of a floating base in the world: position [m] and quaternion xyzw, `(7,)`, or a `(4, 4)` matrix.
+    ///
+    /// Raises:
+    ///     InputError: a name is no joint's (the message lists those that are), a value is not finite, or the base of
+    ///         this robot is fixed.
+    #[pyo3(signature = (positions, *, base=None))]
+    fn configuration<'py>(
+        &self,
+        positions: &Bound<'py, PyAny>,
+        base: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let py = positions.py();
+        let values = by_name("positions", positions)?;
+        let base = base.map(base_pose).transpose()?;
+        let q = self.0.configuration(&pairs(&values), base.as_ref());
+        Ok(PyArray1::from_vec(py, q.map_err(|error| to_python(py, error))?))
+    }
+
+    /// A velocity, `(nv,)`, from joint velocities by name in any order; joints that are not named stand still.
+    ///
+    /// Args:
+    ///     velocities: `{joint: velocity}` [rad/s; m/s for sliding joints].
+    ///     base: linear [m/s] and angular [rad/s] velocity of a floating base in its own frame, `(6,)`.
+    ///
+    /// Raises:
+    ///     InputError: as for `configuration`.
+    #[pyo3(signature = (velocities, *, base=None))]
+    fn velocity<'py>(
+        &self,
+        velocities: &Bound<'py, PyAny>,
+        base: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let py = velocities.py();
+        let values = by_name("velocities", velocities)?;
+        let base = Vector::optional("base", base)?.map(|base| base.fixed::<6>(py, "base")).transpose()?;
+        let v = self.0.velocity(&pairs(&values), base.as_ref());
+        Ok(PyArray1::from_vec(py, v.map_err(|error| to_python(py, error))?))
+    }
+
+    /// Torques, `(nv,)`, from joint torques by name in any order; the others, and a floating base's, are zero.
+    ///
+    /// Args:
+    ///     torques: `{joint: torque}` [Nm; N for sliding joints].
+    ///
+    /// Raises:
+    ///     InputError: as for `configuration`.
+    fn torque<'py>(&self, torques: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let py = torques.py();
+        let values = by_name("torques", torques)?;
+        let tau = self.0.torque(&pairs(&values)).map_err(|error| to_python(py, error))?;
+        Ok(PyArray1::from_vec(py, tau))
+    }
+
+    /// The configuration, `(nq,)`, that a second of motion at constant velocity `v` leads to from `q`.
+    ///
+    /// The same as `pinocchio.integrate`: a floating base moves along its twist, given in its own frame; (cos, sin)
+    /// pairs turn. For a step of `dt` pass `dt * v`.
+    ///
+    /// Raises:
+    ///     InputError: names the argument.
+    fn integrate<'py>(
+        &self,
+        q: &Bound<'py, PyAny>,
+        v: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let py = q.py();
+        let (q, v) = (Vector::new("q", q)?, Vector::new("v", v)?);
+        let next = self.0.integrate(q.slice(), v.slice()).map_err(|error| to_python(py, error))?;
+        Ok(PyArray1::from_vec(py, next))
+    }
+
+    /// A random configuration, `(nq,)`; the same for the same seed.
+    ///
+    /// Joints are uniform within their limits, within half a turn either way where they have none (sliding joints
+    /// within 1 m); a floating base is within 1 m of the origin along each axis, its orientation uniform.
+    fn random_configuration<'py>(
+        &self,
+        py: Python<'py>,
+        seed: &Bound<'_, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(PyArray1::from_vec(py, self.0.random_configuration(whole("seed", seed, u64::MAX)?)))
+    }
+
+    fn _with_payload(
+        &self,
+        link: &Bound<'_, PyAny>,
+        mass: f64,
+        com: &Bound<'_, PyAny>,
+        inertia: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let py = link.py();
+        let com = Vector3::from(Vector::new("com", com)?.fixed::<3>(py, "com")?);
+        let inertia = square("inertia", inertia)?;
+        let loaded = self.0.with_payload(self.link(link)?, mass, com, inertia);
+        Ok(Self(Arc::new(loaded.map_err(|error| to_python(py, error))?)))
     }
 
     /// What was odd in the description, and what was done about it.
@@ -201,4 +344,38 @@ impl PyRobot {
             self.0.nv()
         )
     }
+}
+
+fn read_only<D: Dimension>(array: Bound<'_, PyArray<f64, D>>) -> Bound<'_, PyArray<f64, D>> {
+    array.readwrite().make_nonwriteable();
+    array
+}
+
+/// `{name: value}`.
+fn by_name(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<(String, f64)>> {
+    let wrong = || input(object.py(), format!("{argument}: expected {{joint name: number}}"));
+    let mapping = object.cast::<PyMapping>().map_err(|_| wrong())?;
+    mapping.items()?.iter().map(|item| item.extract::<(String, f64)>().map_err(|_| wrong())).collect()
+}
+
+fn pairs(values: &[(String, f64)]) -> Vec<(&str, f64)> {
+    values.iter().map(|(name, value)| (name.as_str(), *value)).collect()
+}
+
+/// Position and quaternion xyzw, from these or a homogeneous matrix.
+fn base_pose(object: &Bound<'_, PyAny>) -> PyResult<[f64; 7]> {
+    if let Ok(vector) = Vector::new("base", object) {
+        return vector.fixed::<7>(object.py(), "base");
+    }
+    let pose = placement("base", object)?;
+    let rotation = Rotation3::from_matrix_unchecked(pose.rotation);
+    let off = (pose.rotation.tr_mul(&pose.rotation) - Matrix3::identity()).amax();
+    if off > 1e-6 {
+        let text =
+            "base: the matrix must be a pose, its rotation orthonormal; else give (x, y, z, qx, qy, qz, qw)";
+        return Err(input(object.py(), text.into()));
+    }
+    let turn = UnitQuaternion::from_rotation_matrix(&rotation);
+    let ([x, y, z], [i, j, k, w]) = (pose.translation.into(), turn.coords.into());
+    Ok([x, y, z, i, j, k, w])
 }

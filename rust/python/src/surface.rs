@@ -73,7 +73,7 @@ pub struct SurfaceSamples {
 
 impl PySurface {
     fn core(&self, py: Python<'_>) -> PyResult<&Surface> {
-        let surface = self.robot[self.link].surface.as_ref();
+        let surface = self.robot[self.link].surface.as_deref();
         surface.ok_or_else(|| to_python(py, Error::geometry("this link has no surface")))
     }
 }

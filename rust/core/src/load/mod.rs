@@ -14,4 +14,4 @@ mod xml_limits;
 #[cfg(feature = "mesh-files")]
 pub use mesh_file::{load_mesh, VerticesAndTriangles};
 #[cfg(feature = "urdf")]
-pub use urdf::{from_urdf, UrdfGeometry, UrdfOptions};
+pub use urdf::{from_urdf, CheckedUrdf, MissingMeshes, UrdfGeometry, UrdfOptions};

@@ -90,6 +90,15 @@ pub struct JointDescription {
     pub inertia: Matrix3<f64>,
     /// Rotor inertia added to the diagonal of the mass matrix (kg m^2 or kg).
     pub armature: f64,
+    /// Smallest position (rad or m) of a revolute or prismatic joint; none where there is no limit.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub lower: Option<f64>,
+    /// Largest position (rad or m).
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub upper: Option<f64>,
+    /// Largest effort (Nm or N).
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub effort: Option<f64>,
 }
 
 /// A URDF link: a named frame on a body, with the parts of its surface.
@@ -144,7 +153,7 @@ pub struct LinkDescription {
 ///
 /// let mut description = RobotDescription::example_arm();
 /// description.links[3].name = "link_1".into();
-/// assert!(Robot::new(description).unwrap_err().to_string().contains("two links are named 'link_1'"));
+/// assert!(Robot::new(description).unwrap_err().to_string().contains("given more than once: 'link_1'"));
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]

@@ -29,6 +29,9 @@ impl RobotDescription {
             com,
             inertia,
             armature: 0.0,
+            lower: None,
+            upper: None,
+            effort: None,
         };
         let link = |k: usize| LinkDescription {
             name: format!("link_{}", k + 1),

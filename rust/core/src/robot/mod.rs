@@ -1,16 +1,20 @@
 //! The robot: description, tree, kinematics and dynamics.
 
 pub(crate) mod ancestry;
+mod by_name;
+pub(crate) mod check;
 pub(crate) mod configuration;
 pub(crate) mod description;
 mod dynamics;
 mod example;
 pub(crate) mod ids;
+mod integrate;
 pub(crate) mod jacobian;
 pub(crate) mod joint_axis;
 mod kinematics;
 mod link;
 mod numbers;
+mod payload;
 #[allow(clippy::module_inception)] // the room is called after what is in it
 mod robot;
 #[cfg(test)]

@@ -2,14 +2,15 @@
 
 use std::collections::HashMap;
 use std::ops::Index;
+use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::ancestry::Ancestry;
+use super::check;
 use super::description::{JointDescription, JointKind, RobotDescription};
 use super::ids::LinkIndex;
-use super::link::{check_link_tree, Link};
-use super::numbers::LARGEST;
+use super::link::Link;
 use crate::error::{Error, Result};
 use crate::spatial::basis::across;
 use crate::spatial::Pose;
@@ -30,6 +31,9 @@ pub(crate) struct Body {
     pub com: Vector3<f64>,
     pub inertia: Matrix3<f64>,
     pub armature: f64,
+    /// Of the position [rad or m], and of the effort [Nm or N]; infinite where there is none.
+    pub position_limits: [f64; 2],
+    pub effort_limit: f64,
 }
 
 /// A robot: immutable, shareable between threads.
@@ -45,7 +49,7 @@ pub(crate) struct Body {
 /// assert!(weight.iter().all(|torque| torque.abs() < 1e-12));
 /// # Ok::<(), contactsense::Error>(())
 /// ```
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Robot {
     name: String,
     pub(crate) gravity: Vector3<f64>,
@@ -60,47 +64,6 @@ pub struct Robot {
     nq: usize,
     nv: usize,
     warnings: Vec<String>,
-}
-
-/// Smallest mass (kg) and moment of inertia (kg m^2) that is not zero: computing with less loses its digits.
-const LEAST_INERTIA: f64 = 1e-60;
-
-fn check_size(owner: &str, mass: f64, inertia: &Matrix3<f64>) -> Result<()> {
-    for (what, unit, size) in [("mass", "kg", mass.abs()), ("inertia", "kg m^2", inertia.amax())] {
-        if size != 0.0 && !(LEAST_INERTIA..LARGEST).contains(&size) {
-            return Err(Error::model(format!(
-                "{owner}: {what} must be 0 or from {LEAST_INERTIA:e} to {LARGEST:e} {unit}, not {size:e}"
-            )));
-        }
-    }
-    Ok(())
-}
-
-/// A description that was checked: finite numbers, parents before children.
-fn check_joint(joint: &JointDescription, number: usize) -> Result<()> {
-    let name = &joint.name;
-    if joint.parent.get() >= number {
-        return Err(Error::model(format!("joint '{name}': its parent must come before it")));
-    }
-    let finite = joint.placement.rotation.iter().chain(joint.placement.translation.iter());
-    let finite = finite.chain(joint.com.iter()).chain(joint.inertia.iter()).chain(joint.axis.iter());
-    if !finite.chain([&joint.mass, &joint.armature]).all(|x| x.is_finite()) {
-        return Err(Error::model(format!("joint '{name}': placement, axis and inertia must be finite")));
-    }
-    check_size(&format!("joint '{name}'"), joint.mass, &joint.inertia)?;
-    if joint.mass < 0.0 || joint.armature < 0.0 {
-        return Err(Error::model(format!("joint '{name}': mass and armature must not be negative")));
-    }
-    if joint.kind == JointKind::FreeFlyer && number != 1 {
-        return Err(Error::model(format!(
-            "joint '{name}': a free flyer is supported as the base only; other joints must be revolute, \
-             continuous or prismatic"
-        )));
-    }
-    if joint.kind != JointKind::FreeFlyer && joint.axis.norm() < 1e-9 {
-        return Err(Error::model(format!("joint '{name}': the axis must not be zero")));
-    }
-    Ok(())
 }
 
 /// A rotation that takes z to the joint's axis.
@@ -119,19 +82,14 @@ impl Robot {
     /// # Errors
     /// [`Error::Model`] for joints and links that cannot be used, [`Error::Geometry`] for surfaces.
     pub fn new(description: RobotDescription) -> Result<Robot> {
+        let odd = check::check(&description)?;
         let RobotDescription { name, joints, links, gravity, mut warnings } = description;
-        if !gravity.iter().all(|x| x.abs() < LARGEST) {
-            return Err(Error::model(format!(
-                "gravity must be three finite numbers below {LARGEST:e} m/s^2, not {:e}, {:e}, {:e}",
-                gravity.x, gravity.y, gravity.z
-            )));
-        }
+        warnings.extend(odd);
         let mut frames = vec![Matrix3::identity()];
         let mut bodies = vec![Body::world()];
         let mut chains: Vec<Vec<usize>> = vec![vec![]];
         let (mut nq, mut nv) = (0, 0);
         for (index, joint) in joints.iter().enumerate() {
-            check_joint(joint, index + 1).map_err(|error| error.of(&format!("joint '{}'", joint.name)))?;
             let frame = axis_frame(joint);
             let parent_frame = frames[joint.parent.get()];
             bodies.push(Body {
@@ -147,6 +105,11 @@ impl Robot {
                 com: frame.transpose() * joint.com,
                 inertia: frame.transpose() * joint.inertia * frame,
                 armature: joint.armature,
+                position_limits: [
+                    joint.lower.unwrap_or(f64::NEG_INFINITY),
+                    joint.upper.unwrap_or(f64::INFINITY),
+                ],
+                effort_limit: joint.effort.unwrap_or(f64::INFINITY),
             });
             let mut chain = chains[joint.parent.get()].clone();
             chain.push(index + 1);
@@ -163,13 +126,7 @@ impl Robot {
         for (index, link) in links.into_iter().enumerate() {
             let owner = format!("link '{}'", link.name);
             let body = link.body.get();
-            if body >= bodies.len() {
-                return Err(Error::model(format!("{owner}: its joint does not exist")).of(&owner));
-            }
-            if link_index.insert(link.name.clone(), LinkIndex::new(index)).is_some() {
-                return Err(Error::model(format!("two links are named '{}'", link.name)).of(&owner));
-            }
-            check_size(&owner, link.mass, &link.inertia).map_err(|error| error.of(&owner))?;
+            link_index.insert(link.name.clone(), LinkIndex::new(index));
             let frame = frames[body].transpose();
             let placement = Pose {
                 rotation: frame * link.placement.rotation,
@@ -182,7 +139,7 @@ impl Robot {
                 warnings.extend(odd.into_iter().map(|text| format!("{owner}: {text}")));
                 touchable.push(LinkIndex::new(index));
                 body_links[body].push(LinkIndex::new(index));
-                Some(surface)
+                Some(Arc::new(surface))
             };
             frozen.push(Link {
                 name: link.name,
@@ -195,8 +152,8 @@ impl Robot {
                 surface,
             });
         }
-        check_link_tree(&frozen, &chains)?;
-        Ok(Robot {
+        check::check_link_tree(&frozen, &chains)?;
+        let mut robot = Robot {
             name,
             gravity,
             bodies,
@@ -210,7 +167,9 @@ impl Robot {
             nq,
             nv,
             warnings,
-        })
+        };
+        robot.warnings.extend(check::check_mass_matrix(&robot)?);
+        Ok(robot)
     }
 
     /// The robot's name.
@@ -226,6 +185,11 @@ impl Robot {
     /// Number of velocity variables.
     pub fn nv(&self) -> usize {
         self.nv
+    }
+
+    /// Gravity in the world frame (m/s^2).
+    pub fn gravity(&self) -> Vector3<f64> {
+        self.gravity
     }
 
     /// Number of velocity variables without actuator: 6 for a floating base, else 0.
@@ -336,6 +300,8 @@ impl Body {
             com: Vector3::zeros(),
             inertia: Matrix3::zeros(),
             armature: 0.0,
+            position_limits: [f64::NEG_INFINITY, f64::INFINITY],
+            effort_limit: f64::INFINITY,
         }
     }
 }

@@ -17,6 +17,9 @@ pub(crate) fn joint(name: &str, parent: usize) -> JointDescription {
         com: Vector3::zeros(),
         inertia: Matrix3::identity(),
         armature: 0.0,
+        lower: None,
+        upper: None,
+        effort: None,
     }
 }
 

@@ -49,6 +49,9 @@ fn joint(
         com: COM,
         inertia: INERTIA,
         armature: 0.0,
+        lower: None,
+        upper: None,
+        effort: None,
     }
 }
 

@@ -1,47 +1,45 @@
-//! Joints held at a fixed position.
+//! Values that options give to joints by name.
 
-use urdf_rs::JointType;
+use urdf_rs::{JointType, Robot};
 
-use super::names::name_list;
-use super::tree::Tree;
+use super::tree::moving;
 use crate::error::{Error, Result};
+use crate::robot::check::list;
 
-/// The position of each locked joint, in the order given; [`Error::Input`] lists the valid names.
-pub(super) fn positions(tree: &Tree, locked: &[(String, Option<f64>)]) -> Result<Vec<(String, f64)>> {
-    let mut positions: Vec<(String, f64)> = Vec::new();
-    for (name, position) in locked {
-        if !tree.moving().any(|joint| joint.name == *name) {
-            let valid: Vec<String> = tree.moving().map(|joint| format!("'{}'", joint.name)).collect();
-            return Err(Error::input(
-                "locked_joints",
-                format!("'{name}' is no joint that moves; valid names: {}", valid.join(", ")),
-            ));
+/// The value of each joint of the option `argument`, of a joint named twice the last.
+///
+/// [`Error::Input`] lists the valid names.
+pub(super) fn by_joint(
+    robot: &Robot,
+    argument: &'static str,
+    given: &[(String, f64)],
+) -> Result<Vec<(String, f64)>> {
+    let mut values: Vec<(String, f64)> = vec![];
+    for (name, value) in given {
+        let valid = || moving(robot).filter(|joint| joint.joint_type != JointType::Floating);
+        if !valid().any(|joint| joint.name == *name) {
+            let names: Vec<String> = valid().map(|joint| format!("'{}'", joint.name)).collect();
+            let text = format!("'{name}' is no joint that moves; valid names: {}", names.join(", "));
+            return Err(Error::input(argument, text));
         }
-        let position = position.unwrap_or(0.0);
-        if !position.is_finite() {
-            return Err(Error::input(
-                "locked_joints",
-                format!("the position of '{name}' must be a finite number, not {position}"),
-            ));
+        if !value.is_finite() {
+            let text = format!("the value of '{name}' must be a finite number, not {value}");
+            return Err(Error::input(argument, text));
         }
-        match positions.iter_mut().find(|(known, _)| known == name) {
-            Some((_, known)) => *known = position,
-            None => positions.push((name.clone(), position)),
-        }
+        values.retain(|(known, _)| known != name);
+        values.push((name.clone(), *value));
     }
-    Ok(positions)
+    Ok(values)
 }
 
 /// A warning of positions outside the joints' limits.
-pub(super) fn outside_limits(tree: &Tree, locked: &[(String, f64)]) -> Option<String> {
-    let is_outside = |name: &str, position: f64| {
-        tree.moving().any(|joint| {
+pub(super) fn outside_limits(robot: &Robot, locked: &[(String, f64)]) -> Option<String> {
+    let is_outside = |(name, position): &&(String, f64)| {
+        moving(robot).any(|joint| {
             let range = joint.limit.lower..=joint.limit.upper;
-            joint.name == name && joint.joint_type != JointType::Continuous && !range.contains(&position)
+            joint.name == *name && joint.joint_type != JointType::Continuous && !range.contains(position)
         })
     };
-    let outside = locked.iter().filter(|(name, position)| is_outside(name, *position));
-    let outside: Vec<&str> = outside.map(|(name, _)| name.as_str()).collect();
-    let text = || format!("These joints are locked outside their limits: {}", name_list(&outside));
-    (!outside.is_empty()).then(text)
+    let outside: Vec<&str> = locked.iter().filter(is_outside).map(|(name, _)| name.as_str()).collect();
+    (!outside.is_empty()).then(|| format!("These joints are locked outside their limits: {}", list(&outside)))
 }

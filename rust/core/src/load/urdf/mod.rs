@@ -1,32 +1,32 @@
 //! A robot from a URDF file: the same robot as the Python package's loader gives, without Python.
 //!
-//! The file is checked first, element by element ([`guard`]), and rewritten without what is not needed; `urdf-rs`
-//! reads that text. Order and meaning of joints, bodies and links are Pinocchio's.
+//! Order and meaning of joints, bodies and links are Pinocchio's.
 
 mod build;
-mod guard;
-mod inertia;
+mod checked;
 mod lock;
 mod meshes;
-mod names;
-mod numbers;
-mod oddities;
 mod options;
 mod shapes;
-mod singular;
 mod text;
 mod tree;
+mod xml;
 
 #[cfg(test)]
 mod tests;
 
 use std::path::Path;
 
-pub use options::{UrdfGeometry, UrdfOptions};
+pub use options::{MissingMeshes, UrdfGeometry, UrdfOptions};
+use urdf_rs::Joint;
 
+use self::checked::Checked;
+use self::xml::Element;
 use crate::error::{Error, Result};
+use crate::robot::check::list;
 use crate::robot::description::RobotDescription;
 use crate::robot::Robot;
+use crate::surface::Geometry;
 
 /// Reads a URDF file.
 ///
@@ -69,36 +69,108 @@ pub fn from_urdf(path: impl AsRef<Path>, options: &UrdfOptions) -> Result<RobotD
 
 fn read(path: &Path, options: &UrdfOptions) -> Result<RobotDescription> {
     if !options.gravity.iter().all(|x| x.is_finite()) {
-        return Err(Error::input(
-            "gravity",
-            format!("must be 3 finite numbers [m/s^2], not {:?}", options.gravity.as_slice()),
-        ));
+        let text = format!("must be 3 finite numbers [m/s^2], not {:?}", options.gravity.as_slice());
+        return Err(Error::input("gravity", text));
     }
-    let meshes = meshes::MeshFinder::new(path, &options.package_dirs)?;
-    let mut checked = guard::read(path, options.geometry)?;
-    let bad_shape = checked.bad_shape.take();
-    let tree = tree::Tree::new(checked)?;
-    tree.check_reserved_names(options.floating_base)?;
-    let mut warnings = oddities::oddities(&tree);
-    warnings.extend(inertia::check_links(&tree)?);
-    let locked = lock::positions(&tree, &options.locked_joints)?;
-    let mut description = build::bodies(&tree, &locked, options.floating_base)?;
-    if let Some(error) = bad_shape {
-        return Err(error);
+    let Checked { name, robot, mut warnings, .. } = checked::read(path, options)?;
+    let visits = tree::visits(&robot, options.floating_base)?;
+    let locked = lock::by_joint(&robot, "locked_joints", &options.locked_joints)?;
+    let armature = lock::by_joint(&robot, "armature", &options.armature)?;
+    warnings.extend(oddities(&robot));
+    warnings.extend(lock::outside_limits(&robot, &locked));
+    let mut description = build::bodies(&robot, &visits, &locked, options.floating_base);
+    for joint in &mut description.joints {
+        let given = armature.iter().find(|(name, _)| *name == joint.name);
+        joint.armature = given.map_or(0.0, |(_, value)| *value);
     }
-    for (link, visit) in description.links.iter_mut().zip(&tree.visits) {
-        link.geometry = shapes::parts(&tree.robot.links[visit.link], options.geometry, &meshes)?;
+    for (link, visit) in description.links.iter_mut().zip(&visits) {
+        link.geometry = shapes::parts(&robot.links[visit.link])?;
     }
-    inertia::check_bodies(&description)?;
-    warnings.extend(lock::outside_limits(&tree, &locked));
-    warnings.extend(singular::check_mass_matrix(&description)?);
-    if description.links.iter().all(|link| link.geometry.is_empty()) {
-        let tag = options.geometry.tag();
-        warnings.push(format!("No link has <{tag}> geometry, so the robot has no surface to be touched"));
+    Ok(RobotDescription { name, gravity: options.gravity, warnings, ..description })
+}
+
+/// A URDF's text for another reader of URDF, such as Pinocchio, that gives it the same robot.
+///
+/// ```
+/// use contactsense::load::{CheckedUrdf, UrdfOptions};
+///
+/// let checked = CheckedUrdf::read("no_such_file.urdf", &UrdfOptions::default());
+/// assert!(checked.unwrap_err().to_string().contains("no_such_file.urdf"));
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct CheckedUrdf {
+    /// Links, named "link:" and their name, and joints. In place of shapes that not every reader knows the same way
+    /// (meshes and capsules) there are spheres of 1 m.
+    pub xml: String,
+    /// What these are: the link's name, the place of the shape among the link's, and the shape.
+    pub shapes: Vec<(String, usize, Geometry)>,
+    /// What was odd, and what was done about it.
+    pub warnings: Vec<String>,
+}
+
+impl CheckedUrdf {
+    /// Keeps a link apart from a joint of the same name, which Pinocchio cannot lock.
+    pub const LINK_PREFIX: &'static str = "link:";
+
+    /// Reads and checks a file, and reads its meshes; locked joints, gravity and armature are left to the reader.
+    ///
+    /// # Errors
+    /// As [`from_urdf`].
+    pub fn read(path: impl AsRef<Path>, options: &UrdfOptions) -> Result<Self> {
+        let path = path.as_ref();
+        Self::read_file(path, options).map_err(|error| error.in_file(path))
     }
-    description.gravity = options.gravity;
-    description.warnings = warnings;
-    Ok(description)
+
+    fn read_file(path: &Path, options: &UrdfOptions) -> Result<Self> {
+        let Checked { name, mut elements, robot, mut warnings } = checked::read(path, options)?;
+        tree::visits(&robot, options.floating_base)?;
+        warnings.extend(oddities(&robot));
+        let mut shapes = vec![];
+        for link in &robot.links {
+            for (place, part) in shapes::parts(link)?.into_iter().enumerate() {
+                if matches!(part.geometry, Geometry::Mesh { .. } | Geometry::Capsule { .. }) {
+                    shapes.push((link.name.clone(), place, part.geometry));
+                }
+            }
+        }
+        elements.iter_mut().for_each(for_another_reader);
+        Ok(Self { xml: Element::robot(&name, elements).text(), shapes, warnings })
+    }
+}
+
+fn for_another_reader(element: &mut Element) {
+    let is_name =
+        |tag: &str, name: &str| matches!((tag, name), ("link", "name") | ("parent" | "child", "link"));
+    for (name, value) in &mut element.attributes {
+        if is_name(&element.tag, name) {
+            *value = format!("{}{value}", CheckedUrdf::LINK_PREFIX);
+        }
+    }
+    if ["mesh", "capsule"].contains(&element.tag.as_str()) {
+        element.tag = "sphere".into();
+        element.attributes = vec![("radius".into(), "1".into())];
+    }
+    element.children.iter_mut().for_each(for_another_reader);
+}
+
+/// Warnings that name the joints concerned and say what is done about them.
+fn oddities(robot: &urdf_rs::Robot) -> Vec<String> {
+    let mimic =
+        |joint: &Joint| joint.mimic.as_ref().map(|mimic| format!("'{}' ('{}')", joint.name, mimic.joint));
+    let mimics: Vec<String> = tree::moving(robot).filter_map(mimic).collect();
+    let length = |joint: &Joint| joint.axis.xyz.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let long = tree::moving(robot).filter(|joint| (length(joint) - 1.0).abs() > 1e-3);
+    let long: Vec<&str> = long.map(|joint| joint.name.as_str()).collect();
+    let mut warnings = vec![];
+    if !mimics.is_empty() {
+        let mimics = mimics.join(", ");
+        warnings.push(format!("Joints that mimic another (kept as independent joints): {mimics}"));
+    }
+    if !long.is_empty() {
+        let names = list(&long);
+        warnings.push(format!("The axes of these joints are not of unit length (normalised): {names}"));
+    }
+    warnings
 }
 
 impl Robot {

@@ -1,19 +1,16 @@
 //! Links and joints of a URDF as one tree, in Pinocchio's order.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
-use urdf_rs::{Joint, JointType};
+use urdf_rs::{Joint, JointType, Robot};
 
-use super::guard::Checked;
-use super::names::name_list;
 use crate::error::{Error, Result};
+use crate::robot::check::{check_unique, list};
 
 /// The joint that a floating base adds.
 pub(super) const ROOT_JOINT: &str = "root_joint";
 
 const LONGEST_CHAIN: usize = 1000;
-/// The mass matrix is checked once, at a cost that grows with the cube.
-const MOST_JOINTS: usize = 1000;
 
 /// A link, the joint that carries it, and which visit its parent link was.
 pub(super) struct Visit {
@@ -22,124 +19,80 @@ pub(super) struct Visit {
     pub parent: usize,
 }
 
-/// A URDF whose links form one tree.
-pub(super) struct Tree {
-    pub robot: urdf_rs::Robot,
-    pub without_inertial: HashSet<String>,
-    /// Depth-first from the root; a link's child joints by name (urdfdom keeps joints sorted).
-    pub visits: Vec<Visit>,
-}
-
-impl Tree {
-    pub fn new(checked: Checked) -> Result<Self> {
-        let Checked { robot, without_inertial, .. } = checked;
-        let links = index("link", robot.links.iter().map(|link| link.name.as_str()))?;
-        index("joint", robot.joints.iter().map(|joint| joint.name.as_str()))?;
-        let mut parents: Vec<Option<&str>> = vec![None; robot.links.len()];
-        let mut children: Vec<Vec<(usize, usize)>> = vec![vec![]; robot.links.len()];
-        for (number, joint) in robot.joints.iter().enumerate() {
-            let end = |name: &String| {
-                links.get(name.as_str()).copied().ok_or_else(|| {
-                    Error::model(format!(
-                        "joint '{}' names the link '{name}', which the description does not have",
-                        joint.name
-                    ))
-                    .of(&format!("joint '{}'", joint.name))
-                })
-            };
-            let (parent, child) = (end(&joint.parent.link)?, end(&joint.child.link)?);
-            if let Some(first) = parents[child].replace(&joint.parent.link) {
-                return Err(Error::model(format!(
-                    "link '{}' has two parents, '{first}' and '{}'; the links must form a tree",
-                    joint.child.link, joint.parent.link
-                ))
-                .of(&format!("link '{}'", joint.child.link)));
-            }
-            children[parent].push((number, child));
+/// The links depth-first from the root, a link's child joints by name (urdfdom keeps joints sorted).
+pub(super) fn visits(robot: &Robot, floating_base: bool) -> Result<Vec<Visit>> {
+    let names = || robot.links.iter().map(|link| link.name.as_str());
+    check_unique("link", names())?;
+    check_unique("joint", robot.joints.iter().map(|joint| joint.name.as_str()))?;
+    let links: HashMap<&str, usize> = names().zip(0..).collect();
+    let mut parents: Vec<Option<&str>> = vec![None; robot.links.len()];
+    let mut children: Vec<Vec<usize>> = vec![vec![]; robot.links.len()];
+    for (number, joint) in robot.joints.iter().enumerate() {
+        let owner = format!("joint '{}'", joint.name);
+        if joint.name == "universe" || floating_base && joint.name == ROOT_JOINT {
+            let text = format!("{owner} has a name that Pinocchio uses itself; rename it");
+            return Err(Error::model(text).of(&owner));
         }
-        for list in &mut children {
-            list.sort_by(|a, b| robot.joints[a.0].name.cmp(&robot.joints[b.0].name));
-        }
-        let roots: Vec<usize> = (0..parents.len()).filter(|link| parents[*link].is_none()).collect();
-        if roots.len() > 1 {
-            let names: Vec<&str> = roots.iter().map(|link| robot.links[*link].name.as_str()).collect();
+        let end = |name: &String| {
+            let text = || format!("{owner} names the link '{name}', which the description does not have");
+            links.get(name.as_str()).copied().ok_or_else(|| Error::model(text()).of(&owner))
+        };
+        let (parent, child) = (end(&joint.parent.link)?, end(&joint.child.link)?);
+        if let Some(first) = parents[child].replace(&joint.parent.link) {
             return Err(Error::model(format!(
-                "the links must form one tree with one root; links without a parent: {}",
-                name_list(&names)
-            )));
+                "link '{}' has two parents, '{first}' and '{}'; the links must form a tree",
+                joint.child.link, joint.parent.link
+            ))
+            .of(&format!("link '{}'", joint.child.link)));
         }
-        let visits = visits(&robot, &roots, &children)?;
-        let tree = Self { visits, robot, without_inertial };
-        let moving = tree.moving().count();
-        if moving > MOST_JOINTS {
-            return Err(Error::model(format!("{moving} joints move; supported: up to {MOST_JOINTS}")));
-        }
-        Ok(tree)
+        children[parent].push(number);
     }
-
-    /// The joints that are not fixed, in the file's order.
-    pub fn moving(&self) -> impl Iterator<Item = &Joint> {
-        self.robot.joints.iter().filter(|joint| joint.joint_type != JointType::Fixed)
+    let roots: Vec<usize> = (0..parents.len()).filter(|link| parents[*link].is_none()).collect();
+    if roots.len() > 1 {
+        let roots: Vec<&str> = roots.iter().map(|link| robot.links[*link].name.as_str()).collect();
+        return Err(Error::model(format!(
+            "the links must form one tree with one root; links without a parent: {}",
+            list(&roots)
+        )));
     }
-
-    /// Refuses names that Pinocchio uses itself.
-    pub fn check_reserved_names(&self, floating_base: bool) -> Result<()> {
-        for joint in &self.robot.joints {
-            if joint.name == "universe" || floating_base && joint.name == ROOT_JOINT {
-                return Err(Error::model(format!(
-                    "joint '{}' has a name that Pinocchio uses itself; rename it",
-                    joint.name
-                ))
-                .of(&format!("joint '{}'", joint.name)));
-            }
-        }
-        Ok(())
-    }
-}
-
-/// Names and their places; refuses those given twice.
-fn index<'a>(what: &str, names: impl Iterator<Item = &'a str>) -> Result<HashMap<&'a str, usize>> {
-    let mut places = HashMap::new();
-    let mut twice = vec![];
-    for (place, name) in names.enumerate() {
-        if places.insert(name, place).is_some() && !twice.contains(&name) {
-            twice.push(name);
+    for joint in robot.joints.iter().filter(|joint| joint.joint_type == JointType::Floating) {
+        if floating_base || !roots.contains(&links[joint.parent.link.as_str()]) {
+            let owner = format!("joint '{}'", joint.name);
+            let text =
+                "floats inside the robot; a joint can float from the root link only, without floating_base";
+            return Err(Error::model(format!("{owner} {text}")).of(&owner));
         }
     }
-    if twice.is_empty() {
-        return Ok(places);
-    }
-    Err(Error::model(format!("{what} names must be unique; given more than once: {}", name_list(&twice))))
-}
-
-fn visits(robot: &urdf_rs::Robot, roots: &[usize], children: &[Vec<(usize, usize)>]) -> Result<Vec<Visit>> {
     let mut visits: Vec<Visit> = Vec::with_capacity(robot.links.len());
-    let mut reached = vec![false; robot.links.len()];
     let mut ahead: Vec<(Visit, usize)> =
         roots.iter().map(|&link| (Visit { link, joint: None, parent: 0 }, 0)).collect();
     while let Some((visit, depth)) = ahead.pop() {
+        let name = &robot.links[visit.link].name;
         if depth > LONGEST_CHAIN {
             return Err(Error::model(format!(
-                "the chain of links down to '{}' is longer than {LONGEST_CHAIN}",
-                robot.links[visit.link].name
+                "the chain of links down to '{name}' is longer than {LONGEST_CHAIN}"
             )));
         }
-        reached[visit.link] = true;
-        let parent = visits.len();
-        for &(joint, link) in children[visit.link].iter().rev() {
-            ahead.push((Visit { link, joint: Some(joint), parent }, depth + 1));
+        children[visit.link].sort_by(|a, b| robot.joints[*b].name.cmp(&robot.joints[*a].name));
+        for &number in &children[visit.link] {
+            let link = links[robot.joints[number].child.link.as_str()];
+            ahead.push((Visit { link, joint: Some(number), parent: visits.len() }, depth + 1));
         }
         visits.push(visit);
     }
-    let cycle: Vec<&str> = robot
-        .links
-        .iter()
-        .zip(&reached)
-        .filter(|(_, seen)| !**seen)
-        .map(|(link, _)| link.name.as_str())
-        .collect();
-    if cycle.is_empty() {
-        return Ok(visits);
+    let reached = |link: usize| visits.iter().any(|visit| visit.link == link);
+    if visits.len() < robot.links.len() {
+        let cycle: Vec<&str> =
+            names().enumerate().filter(|(link, _)| !reached(*link)).map(|(_, name)| name).collect();
+        return Err(Error::model(format!(
+            "the links must form a tree; these form a cycle: {}",
+            list(&cycle)
+        )));
     }
-    Err(Error::model(format!("the links must form a tree; these form a cycle: {}", name_list(&cycle))))
+    Ok(visits)
+}
+
+/// The joints that are not fixed, in the file's order.
+pub(super) fn moving(robot: &Robot) -> impl Iterator<Item = &Joint> {
+    robot.joints.iter().filter(|joint| joint.joint_type != JointType::Fixed)
 }

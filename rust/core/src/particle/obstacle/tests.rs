@@ -40,6 +40,9 @@ fn arm() -> Robot {
             com,
             inertia,
             armature: 0.0,
+            lower: None,
+            upper: None,
+            effort: None,
         });
         let pose = Pose { rotation: Matrix3::identity(), translation: Vector3::new(0.0, 0.0, 0.1) };
         links.push(LinkDescription {

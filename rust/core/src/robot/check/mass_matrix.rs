@@ -1,11 +1,11 @@
 //! Which masses make the mass matrix singular.
 
-use nalgebra::{DMatrix, SymmetricEigen, Vector3};
+use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::inertia::NO_MOMENT;
-use super::names::name_list;
+use super::list;
 use crate::error::{Error, Result};
-use crate::robot::description::{JointKind, RobotDescription};
+use crate::robot::description::JointKind;
 use crate::robot::Robot;
 
 const RANK: f64 = 1e-12;
@@ -17,20 +17,13 @@ const TAKES_PART: f64 = 1e-3;
 ///
 /// Kinematics, isolation and inverse dynamics stay valid for such a robot; forward dynamics does not.
 /// [`Error::Model`] where the mass matrix has a negative eigenvalue or is not finite.
-pub(super) fn check_mass_matrix(description: &RobotDescription) -> Result<Option<String>> {
-    let robot = Robot::new(RobotDescription {
-        name: description.name.clone(),
-        joints: description.joints.clone(),
-        links: vec![],
-        gravity: Vector3::zeros(),
-        warnings: vec![],
-    })?;
+pub(crate) fn check_mass_matrix(robot: &Robot) -> Result<Option<String>> {
     if robot.nv() == 0 {
         return Ok(None);
     }
     let mut idle = vec![true; robot.nv()];
     for turn in 0..3 {
-        let matrix = robot.mass_matrix(&configuration(description, turn))?;
+        let matrix = robot.mass_matrix(&configuration(robot, turn))?;
         if !matrix.iter().all(|x| x.is_finite()) {
             return Err(Error::model(
                 "the mass matrix is not finite; check the magnitudes of placements, masses and inertias",
@@ -40,29 +33,29 @@ pub(super) fn check_mass_matrix(description: &RobotDescription) -> Result<Option
             *idle &= null;
         }
     }
-    let joints = description.joints.iter().enumerate();
+    let joints = robot.joint_names().iter().enumerate();
     let names: Vec<&str> = joints
         .filter(|(index, _)| idle[robot.velocity_range(index + 1)].contains(&true))
-        .map(|(_, joint)| joint.name.as_str())
+        .map(|(_, name)| name.as_str())
         .collect();
     let text = || {
         format!(
             "No mass or inertia moves with these joints, so the mass matrix is singular and the \
              acceleration of forward dynamics is not to be relied on: {}",
-            name_list(&names)
+            list(&names)
         )
     };
     Ok((!names.is_empty()).then(text))
 }
 
 /// Neutral at turn 0, else joints spread over (-1, 1) [rad or m] by the golden ratio; the base changes nothing.
-fn configuration(description: &RobotDescription, turn: u32) -> Vec<f64> {
+fn configuration(robot: &Robot, turn: u32) -> Vec<f64> {
     let mut q = vec![];
     let mut seed = 0.5 * f64::from(turn);
-    for joint in &description.joints {
+    for kind in robot.joint_kinds() {
         seed = (seed + 0.618_033_988_749_895).fract();
         let position = if turn == 0 { 0.0 } else { 2.0 * seed - 1.0 };
-        match joint.kind {
+        match kind {
             JointKind::FreeFlyer => q.extend([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]),
             JointKind::Continuous => q.extend([position.cos(), position.sin()]),
             JointKind::Revolute | JointKind::Prismatic => q.push(position),

@@ -1,0 +1,88 @@
+//! A body that the description does not have, held by a link.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::ids::LinkIndex;
+use super::robot::{Body, Robot};
+use crate::error::{Error, Result};
+use crate::spatial::Pose;
+
+impl Robot {
+    /// The robot with a payload fixed to a link: `mass` (kg), centre of mass `com` in the link's frame (m), `inertia`
+    /// about it in the link's axes (kg m^2; zero for a point mass).
+    ///
+    /// The payload has no surface.
+    ///
+    /// ```
+    /// use contactsense::robot::Robot;
+    /// use nalgebra::{Matrix3, Vector3};
+    ///
+    /// let robot = Robot::example_arm();
+    /// let loaded = robot.with_payload(robot.link("link_7")?, 1.5, Vector3::z(), Matrix3::zeros())?;
+    /// assert!((loaded.mass() - robot.mass() - 1.5).abs() < 1e-12);
+    /// # Ok::<(), contactsense::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Input`] where a number is not finite, the mass is negative, or the inertia is none of a rigid body.
+    pub fn with_payload(
+        &self,
+        link: LinkIndex,
+        mass: f64,
+        com: Vector3<f64>,
+        inertia: Matrix3<f64>,
+    ) -> Result<Robot> {
+        if !mass.is_finite() || mass < 0.0 {
+            return Err(Error::input("mass", format!("must be finite and not negative [kg], not {mass}")));
+        }
+        if !com.iter().all(|x| x.is_finite()) {
+            return Err(Error::input("com", "must be 3 finite numbers [m]"));
+        }
+        let moments = inertia.symmetric_eigenvalues();
+        let largest = inertia.amax();
+        let is_symmetric = (inertia - inertia.transpose()).amax() <= 1e-9 * largest;
+        if !largest.is_finite() || !is_symmetric || moments.min() < -1e-9 * largest {
+            let text = "must be (3, 3), symmetric, with no negative principal moment [kg m^2]";
+            return Err(Error::input("inertia", text));
+        }
+        let mut loaded = self.clone();
+        let held = &mut loaded.links[link.get()];
+        let (body, placement) = (held.body, held.placement);
+        (held.mass, held.com, held.inertia) =
+            joined((held.mass, held.com, held.inertia), (mass, com, inertia));
+        if let Some(body) = loaded.bodies.get_mut(body).filter(|_| body != 0) {
+            body.add(mass, &com, &inertia, &placement);
+        }
+        Ok(loaded)
+    }
+
+    /// Mass of all that moves (kg).
+    pub fn mass(&self) -> f64 {
+        self.bodies.iter().map(|body| body.mass).sum()
+    }
+}
+
+impl Body {
+    /// Adds what is given in a frame placed in the body's.
+    fn add(&mut self, mass: f64, com: &Vector3<f64>, inertia: &Matrix3<f64>, placement: &Pose) {
+        let com = placement.transform_point(com);
+        let inertia = placement.rotation * inertia * placement.rotation.transpose();
+        (self.mass, self.com, self.inertia) =
+            joined((self.mass, self.com, self.inertia), (mass, com, inertia));
+    }
+}
+
+/// Mass, centre of mass and inertia about it.
+type Inertia = (f64, Vector3<f64>, Matrix3<f64>);
+
+/// Two rigid bodies as one, by the parallel axis theorem.
+fn joined(one: Inertia, other: Inertia) -> Inertia {
+    let mass = one.0 + other.0;
+    if mass == 0.0 {
+        return (0.0, one.1, one.2 + other.2);
+    }
+    let apart = one.1 - other.1;
+    let spread = Matrix3::from_diagonal_element(apart.norm_squared()) - apart * apart.transpose();
+    let com = (one.0 * one.1 + other.0 * other.1) / mass;
+    (mass, com, one.2 + other.2 + spread * (one.0 * other.0 / mass))
+}
