@@ -97,8 +97,9 @@ def test_path_of_another_machine_is_found_by_its_end(site, read, scheme):
 @pytest.mark.parametrize("read", [Robot.from_urdf, _core._robot_from_urdf], ids=["package", "core"])
 def test_missing_mesh_may_be_left_out(site, read):
     body = shape('<mesh filename="package://nowhere/none.stl"/>')
-    urdf = write(site / "arm", robot(link("a", SOLID + body), link("b", SOLID + body + shape('<sphere radius="1"/>')))
-                 .replace("</robot>", joint("j", "a", "b") + "</robot>"))  # fmt: skip
+    ball = shape('<sphere radius="1"/>')
+    text = robot(link("a", SOLID + body), link("b", SOLID + body + ball), joint("j", "a", "b"))
+    urdf = write(site / "arm", text)
     with pytest.raises(GeometryError, match=r"link 'a'.*none.stl"):
         read(urdf)
     found = read(urdf, missing_meshes="warn")

@@ -11,8 +11,8 @@ FloatArray: TypeAlias = NDArray[np.float64]
 JointKind: TypeAlias = Literal["free_flyer", "revolute", "continuous", "prismatic"]
 GeometryKind: TypeAlias = Literal["mesh", "box", "cylinder", "sphere", "capsule"]
 # Kind and parameters of a shape: "mesh" (vertices (n, 3), triangles (m, 3) uint32); "box" (x, y, z), full
-# extents; "cylinder" (radius, length); "sphere" (radius,); "capsule" (radius, length of the cylindrical part).
-# Cylinders and capsules lie along their z axis.
+# extents; "cylinder" (radius, length); "sphere" (radius,); "capsule" (radius, length of the cylindrical
+# part). Cylinders and capsules lie along their z axis.
 Shape: TypeAlias = tuple[GeometryKind, tuple[Any, ...]]
 
 

@@ -47,8 +47,8 @@ def link_inertias(model: Any, parents: list[int | None], is_body: IsBody) -> dic
         parents[index]: index for index, frame in reversed(list(enumerate(model.frames))) if is_body(frame)
     }
     own = {index: np.zeros(10) for index, frame in enumerate(model.frames) if is_body(frame)}
-    # Of each (formerly) moving body, and of the world: what it weighs in all, and its links. Older versions of
-    # Pinocchio do not know what the world weighs.
+    # Of each (formerly) moving body, and of the world: what it weighs in all, and its links. Older Pinocchios
+    # do not know what the world weighs.
     rest = {~joint: _parameters(model.inertias[joint]) for joint in range(model.njoints)}
     if not rest[~0].any():
         del rest[~0]

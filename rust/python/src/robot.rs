@@ -9,7 +9,7 @@ use numpy::{PyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyMapping, PyTuple};
 
-use crate::arguments::{text, whole};
+use crate::arguments::{number, text, whole};
 use crate::arrays::Vector;
 use crate::description::{description as read_description, placement, square};
 use crate::errors::{detached, input, to_python};
@@ -215,14 +215,14 @@ impl PyRobot {
     fn _with_payload(
         &self,
         link: &Bound<'_, PyAny>,
-        mass: f64,
+        mass: &Bound<'_, PyAny>,
         com: &Bound<'_, PyAny>,
         inertia: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
         let py = link.py();
         let com = Vector3::from(Vector::new("com", com)?.fixed::<3>(py, "com")?);
         let inertia = square("inertia", inertia)?;
-        let loaded = self.0.with_payload(self.link(link)?, mass, com, inertia);
+        let loaded = self.0.with_payload(self.link(link)?, number("mass", mass)?, com, inertia);
         Ok(Self(Arc::new(loaded.map_err(|error| to_python(py, error))?)))
     }
 
