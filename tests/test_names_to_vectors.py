@@ -1,4 +1,4 @@
-"""Vectors from joint names, integration on the configuration space, limits and payloads; the oracle is Pinocchio."""
+"""Vectors from joint names, integration, limits and payloads, as Pinocchio has them."""
 
 import numpy as np
 import pinocchio as pin

@@ -1,4 +1,4 @@
-"""Descriptions as they are found in the wild: each loads with a warning, or is refused for a reason to act on.
+"""Descriptions as they are found in the wild: each loads, or is refused for a reason.
 
 Both readers are tried: the package's, which builds with Pinocchio, and the core's own.
 """
@@ -110,7 +110,7 @@ def test_rotor_inertia_is_added_to_the_mass_matrix(read, tmp_path):
     path = write(tmp_path, ARM)
     plain = read(path)
     given = {"elbow": 0.25, "rail": 3}
-    if read is cs.Robot.from_urdf:
+    if read == cs.Robot.from_urdf:
         geared = read(path, armature=given)
     else:
         geared = read(path, armature=list(given.items()))
