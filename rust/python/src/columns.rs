@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
-use crate::returned::reserve;
+use crate::returned::{read_only, reserve};
 
 /// Points with their normals and triangles.
 #[derive(Default)]
@@ -47,8 +47,10 @@ impl Columns {
     pub fn arrays(self, py: Python<'_>) -> PyResult<Arrays> {
         let count = self.triangles.len();
         let rows = |rows: Vec<[f64; 3]>| {
-            PyResult::Ok(PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])?.unbind())
+            let array = PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])?;
+            PyResult::Ok(read_only(array).unbind())
         };
-        Ok((rows(self.points)?, rows(self.normals)?, PyArray1::from_vec(py, self.triangles).unbind()))
+        let triangles = read_only(PyArray1::from_vec(py, self.triangles)).unbind();
+        Ok((rows(self.points)?, rows(self.normals)?, triangles))
     }
 }

@@ -17,8 +17,11 @@ use crate::sensor::sensors;
 ///
 /// One pass for all sensors, also for several in a chain and at fixed joints. `sensors`: of `ForceTorqueSensor`, names and
 /// links unique. Raises `InputError` that names what is wrong.
-#[pyclass(frozen, name = "LoadCompensator", module = "contactsense._core")]
-pub struct PyLoadCompensator(Mutex<LoadCompensator>);
+#[pyclass(frozen, name = "LoadCompensator", module = "contactsense")]
+pub struct PyLoadCompensator {
+    compensator: Mutex<LoadCompensator>,
+    shown: String,
+}
 
 #[pymethods]
 impl PyLoadCompensator {
@@ -27,8 +30,15 @@ impl PyLoadCompensator {
         #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
         sensors: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
-        let compensator = LoadCompensator::new(robot.get().0.clone(), &self::sensors(sensors)?);
-        Ok(Self(Mutex::new(compensator.map_err(|error| to_python(robot.py(), error))?)))
+        let sensors = self::sensors(sensors)?;
+        let compensator = LoadCompensator::new(robot.get().0.clone(), &sensors);
+        let compensator = Mutex::new(compensator.map_err(|error| to_python(robot.py(), error))?);
+        let shown = format!("LoadCompensator('{}', {} sensors)", robot.get().0.name(), sensors.len());
+        Ok(Self { compensator, shown })
+    }
+
+    fn __repr__(&self) -> &str {
+        &self.shown
     }
 
     /// The external wrench that each sensor sees, `(n_sensors, 6)` [N, Nm]: on the robot, world axes, at the sensor's origin.
@@ -45,7 +55,7 @@ impl PyLoadCompensator {
         let py = q.py();
         let (q, v, a) = (Vector::new("q", q)?, Vector::new("v", v)?, Vector::new("a", a)?);
         let wrenches = Readings::new(wrenches)?;
-        let mut compensator = sole(py, "LoadCompensator", &self.0)?;
+        let mut compensator = sole(py, "LoadCompensator", &self.compensator)?;
         match compensator.update(q.slice(), v.slice(), a.slice(), wrenches.rows()) {
             Ok(external) => wrench_rows(py, external),
             Err(error) => Err(to_python(py, error)),

@@ -4,17 +4,20 @@ use std::sync::Arc;
 
 use contactsense::nalgebra::{Matrix3, Vector3};
 use contactsense::particle::{FilterEstimate, Mode};
-use contactsense::robot::Robot;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::returned::from_rows;
+use crate::isolator::once;
+use crate::names::Names;
+use crate::plain::{reduced, restored, to_dict, Reduced};
+use crate::returned::{from_rows, read_only, result};
 
 /// A place where the contact may be.
-#[pyclass(frozen, name = "Mode", module = "contactsense._core")]
+#[pyclass(frozen, name = "Mode", module = "contactsense")]
 pub struct PyMode {
-    robot: Arc<Robot>,
+    names: Arc<Names>,
     mode: Mode,
 }
 
@@ -23,25 +26,25 @@ impl PyMode {
     /// The link's name.
     #[getter]
     fn link(&self) -> &str {
-        &self.robot.links()[self.mode.link.get()].name
+        self.names.link(self.mode.link)
     }
 
     /// `(3,)`, on the link's surface, world frame [m].
     #[getter]
     fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.mode.point.as_slice())
+        result(py, self.mode.point.as_slice())
     }
 
     /// Force on the robot, `(3,)`, world frame [N].
     #[getter]
     fn force<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.mode.force.as_slice())
+        result(py, self.mode.force.as_slice())
     }
 
     /// Outward normal, `(3,)`, world frame.
     #[getter]
     fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.mode.normal.as_slice())
+        result(py, self.mode.normal.as_slice())
     }
 
     /// Share of the particles' weight.
@@ -56,6 +59,15 @@ impl PyMode {
         self.mode.spread
     }
 
+    /// As plain Python data: numbers, strings and lists.
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        to_dict(slf, &["link", "point", "force", "normal", "probability", "spread"])
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, "Mode", &(&*self.names, &self.mode))
+    }
+
     fn __repr__(&self) -> String {
         let p = &self.mode.point;
         let (link, probability) = (self.link(), self.mode.probability);
@@ -64,23 +76,58 @@ impl PyMode {
 }
 
 /// The contact as a filter sees it.
-#[pyclass(frozen, name = "ContactEstimate", module = "contactsense._core")]
+#[pyclass(frozen, name = "ContactEstimate", module = "contactsense")]
 pub struct PyContactEstimate {
-    pub robot: Arc<Robot>,
+    names: Arc<Names>,
     /// Those that are looked on.
-    pub links: Arc<[usize]>,
-    pub found: FilterEstimate,
-    pub time: f64,
+    links: Arc<[usize]>,
+    found: FilterEstimate,
+    time: f64,
+    wrapped: PyOnceLock<Py<PyTuple>>,
+}
+
+/// What `to_dict` of an estimate holds.
+const ESTIMATE: [&str; 16] = [
+    "contact",
+    "event",
+    "link",
+    "point",
+    "force",
+    "normal",
+    "magnitude",
+    "stiffness",
+    "covariance",
+    "link_probabilities",
+    "modes",
+    "ambiguous",
+    "explained",
+    "residual",
+    "effective_samples",
+    "time",
+];
+
+/// An object that was pickled.
+pub fn restore<'py>(py: Python<'py>, class: &str, state: &[u8]) -> PyResult<Bound<'py, PyAny>> {
+    if class == "Mode" {
+        let (names, mode) = restored(state)?;
+        return Ok(Bound::new(py, PyMode { names: Arc::new(names), mode })?.into_any());
+    }
+    let (names, links, found, time): (Names, Vec<usize>, _, _) = restored(state)?;
+    Ok(Bound::new(py, PyContactEstimate::new(Arc::new(names), links.into(), found, time))?.into_any())
 }
 
 impl PyContactEstimate {
+    pub fn new(names: Arc<Names>, links: Arc<[usize]>, found: FilterEstimate, time: f64) -> Self {
+        PyContactEstimate { names, links, found, time, wrapped: PyOnceLock::new() }
+    }
+
     fn contact_mode(&self) -> Option<&Mode> {
         self.found.estimate.contact.as_ref()
     }
 
     fn vector<'py>(&self, py: Python<'py>, of: impl Fn(&Mode) -> Vector3<f64>) -> Bound<'py, PyArray1<f64>> {
         let vector = self.contact_mode().map_or(Vector3::repeat(f64::NAN), of);
-        PyArray1::from_slice(py, vector.as_slice())
+        result(py, vector.as_slice())
     }
 }
 
@@ -102,7 +149,7 @@ impl PyContactEstimate {
     /// The most probable link's name; empty without contact.
     #[getter]
     fn link(&self) -> &str {
-        self.contact_mode().map_or("", |mode| &self.robot.links()[mode.link.get()].name)
+        self.contact_mode().map_or("", |mode| self.names.link(mode.link))
     }
 
     /// The most probable place on that link, `(3,)`, world frame [m]; NaN without contact.
@@ -139,7 +186,7 @@ impl PyContactEstimate {
     #[getter]
     fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let c = self.found.estimate.covariance.unwrap_or(Matrix3::repeat(f64::NAN));
-        from_rows(py, (0..3).map(|i| [c[(i, 0)], c[(i, 1)], c[(i, 2)]]))
+        from_rows(py, (0..3).map(|i| [c[(i, 0)], c[(i, 1)], c[(i, 2)]])).map(read_only)
     }
 
     /// Share of the particles' weight on each link that is looked on.
@@ -147,7 +194,7 @@ impl PyContactEstimate {
     fn link_probabilities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
         for (&link, probability) in self.links.iter().zip(&self.found.estimate.link_probabilities) {
-            dict.set_item(&self.robot.links()[link].name, probability)?;
+            dict.set_item(&self.names.links[link], probability)?;
         }
         Ok(dict)
     }
@@ -155,9 +202,8 @@ impl PyContactEstimate {
     /// Clusters of particles, best first; at most eight.
     #[getter]
     fn modes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        let wrap = |mode: &Mode| Bound::new(py, PyMode { robot: self.robot.clone(), mode: *mode });
-        let modes: Vec<_> = self.found.estimate.modes.iter().map(wrap).collect::<PyResult<_>>()?;
-        PyTuple::new(py, modes)
+        let wrap = |mode: &Mode| Bound::new(py, PyMode { names: self.names.clone(), mode: *mode });
+        once(py, &self.wrapped, || self.found.estimate.modes.iter().map(wrap).collect())
     }
 
     /// The data do not say which link, or where on it, or motion has not confirmed yet that it is a single push: one obstacle
@@ -193,6 +239,15 @@ impl PyContactEstimate {
     #[getter]
     fn time(&self) -> f64 {
         self.time
+    }
+
+    /// As plain Python data: numbers, strings, lists and dicts, `None` for what is undetermined.
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        to_dict(slf, &ESTIMATE)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, "ContactEstimate", &(&*self.names, &self.links[..], &self.found, self.time))
     }
 
     fn __repr__(&self) -> String {

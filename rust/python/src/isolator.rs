@@ -3,26 +3,30 @@
 use std::sync::{Arc, Mutex};
 
 use contactsense::isolation::{Candidate, Contact, ContactIsolator, Isolation, IsolatorOptions};
-use contactsense::robot::{LinkIndex, Robot};
+use contactsense::robot::LinkIndex;
 use contactsense::sensor::JOINT_TORQUES;
 use nalgebra::Vector6;
 use numpy::PyArray1;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyDict, PyTuple};
+use pyo3::PyTypeInfo;
 
 use crate::arguments::{pushing, robot, sole, whole, Number};
 use crate::arrays::{Readings, Vector};
 use crate::errors::to_python;
+use crate::names::Names;
 use crate::noise::noise_model;
 use crate::observer::scalar_or_vector;
-use crate::returned::vector;
+use crate::plain::{reduced, restored, to_dict, Reduced};
+use crate::returned::{result, vector};
 use crate::robot::PyRobot;
 use crate::sensor::{sensor_names, sensors, wrench_thresholds};
 
 /// A place where the line of action meets a surface.
-#[pyclass(frozen, name = "Candidate", module = "contactsense._core")]
+#[pyclass(frozen, name = "Candidate", module = "contactsense")]
 pub struct PyCandidate {
-    robot: Arc<Robot>,
+    names: Arc<Names>,
     candidate: Candidate,
 }
 
@@ -31,25 +35,34 @@ impl PyCandidate {
     /// The link's name.
     #[getter]
     fn link(&self) -> &str {
-        &self.robot[self.candidate.link].name
+        self.names.link(self.candidate.link)
     }
 
     /// `(3,)`, world frame [m].
     #[getter]
     fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.candidate.point.as_slice())
+        result(py, self.candidate.point.as_slice())
     }
 
     /// Outward surface normal, `(3,)`, world frame.
     #[getter]
     fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.candidate.normal.as_slice())
+        result(py, self.candidate.normal.as_slice())
     }
 
     /// Whether the force enters the surface here.
     #[getter]
     fn pushing(&self) -> bool {
         self.candidate.pushing
+    }
+
+    /// As plain Python data: numbers, strings and lists.
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        to_dict(slf, &["link", "point", "normal", "pushing"])
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, "Candidate", &(&*self.names, &self.candidate))
     }
 
     fn __repr__(&self) -> String {
@@ -59,12 +72,12 @@ impl PyCandidate {
 }
 
 /// One contact; vectors that the data do not determine are NaN.
-#[pyclass(frozen, name = "Contact", module = "contactsense._core")]
+#[pyclass(frozen, name = "Contact", module = "contactsense")]
 pub struct PyContact {
-    robot: Arc<Robot>,
-    sensors: Arc<[String]>,
+    names: Arc<Names>,
     contact: Contact,
     candidates: Vec<Candidate>,
+    wrapped: PyOnceLock<Py<PyTuple>>,
 }
 
 #[pymethods]
@@ -72,7 +85,7 @@ impl PyContact {
     /// The contact link's name.
     #[getter]
     fn link(&self) -> &str {
-        &self.robot[self.contact.link].name
+        self.names.link(self.contact.link)
     }
 
     /// `(3,)`, world frame [m].
@@ -108,7 +121,7 @@ impl PyContact {
     /// What saw it: "joint torques", or the sensor's name.
     #[getter]
     fn source(&self) -> &str {
-        self.contact.source.map_or(JOINT_TORQUES, |sensor| &self.sensors[sensor.get()])
+        self.contact.source.map_or(JOINT_TORQUES, |sensor| &self.names.sensors[sensor.get()])
     }
 
     /// Whether 90 % of the places that explain the torques lie within `locate_within` of the point. If not, the link may
@@ -139,13 +152,21 @@ impl PyContact {
     /// torques about as well, or the points of several solutions.
     #[getter]
     fn candidates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        let wrap = |candidate: &Candidate| PyCandidate { robot: self.robot.clone(), candidate: *candidate };
-        let list: Vec<Bound<'py, PyCandidate>> = self
-            .candidates
-            .iter()
-            .map(|candidate| Bound::new(py, wrap(candidate)))
-            .collect::<PyResult<_>>()?;
-        PyTuple::new(py, list)
+        once(py, &self.wrapped, || {
+            self.candidates
+                .iter()
+                .map(|candidate| Bound::new(py, PyCandidate::new(&self.names, candidate)))
+                .collect()
+        })
+    }
+
+    /// As plain Python data: numbers, strings, lists and dicts, `None` for what is undetermined.
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        to_dict(slf, &CONTACT)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, "Contact", &(&*self.names, &self.contact, &self.candidates))
     }
 
     fn __repr__(&self) -> String {
@@ -161,34 +182,86 @@ impl PyContact {
 }
 
 /// All contacts of one instant.
-#[pyclass(frozen, name = "Isolation", module = "contactsense._core")]
+#[pyclass(frozen, name = "Isolation", module = "contactsense")]
 pub struct PyIsolation {
-    robot: Arc<Robot>,
-    sensors: Arc<[String]>,
+    names: Arc<Names>,
     isolation: Isolation,
+    wrapped: PyOnceLock<Py<PyTuple>>,
 }
 
-/// A tuple of contacts that live on their own.
+/// The contacts that live on their own, made once.
 pub fn contacts<'py>(
     py: Python<'py>,
-    robot: &Arc<Robot>,
-    sensors: &Arc<[String]>,
+    names: &Arc<Names>,
     isolation: &Isolation,
+    wrapped: &PyOnceLock<Py<PyTuple>>,
 ) -> PyResult<Bound<'py, PyTuple>> {
-    let wrap = |contact: &Contact| PyContact {
-        robot: robot.clone(),
-        sensors: sensors.clone(),
-        candidates: isolation.candidates[contact.candidates.clone()].to_vec(),
-        contact: contact.clone(),
+    let wrap = |contact: &Contact| {
+        let candidates = &isolation.candidates[contact.candidates.clone()];
+        Bound::new(py, PyContact::new(names.clone(), contact.clone(), candidates.to_vec()))
     };
-    let list: Vec<Bound<'py, PyContact>> =
-        isolation.contacts.iter().map(|contact| Bound::new(py, wrap(contact))).collect::<PyResult<_>>()?;
-    PyTuple::new(py, list)
+    once(py, wrapped, || isolation.contacts.iter().map(wrap).collect())
+}
+
+/// A tuple that is made at the first use.
+pub fn once<'py, T: PyTypeInfo>(
+    py: Python<'py>,
+    wrapped: &PyOnceLock<Py<PyTuple>>,
+    items: impl FnOnce() -> PyResult<Vec<Bound<'py, T>>>,
+) -> PyResult<Bound<'py, PyTuple>> {
+    let tuple = wrapped.get_or_try_init(py, || PyResult::Ok(PyTuple::new(py, items()?)?.unbind()))?;
+    Ok(tuple.bind(py).clone())
+}
+
+/// What `to_dict` of a contact holds.
+const CONTACT: [&str; 11] = [
+    "link",
+    "point",
+    "point_local",
+    "force",
+    "normal",
+    "wrench",
+    "source",
+    "located",
+    "point_std",
+    "verified",
+    "candidates",
+];
+
+impl PyCandidate {
+    fn new(names: &Arc<Names>, candidate: &Candidate) -> Self {
+        PyCandidate { names: names.clone(), candidate: *candidate }
+    }
+}
+
+impl PyContact {
+    pub fn new(names: Arc<Names>, contact: Contact, candidates: Vec<Candidate>) -> Self {
+        PyContact { names, contact, candidates, wrapped: PyOnceLock::new() }
+    }
+}
+
+/// An object that was pickled.
+pub fn restore<'py>(py: Python<'py>, class: &str, state: &[u8]) -> PyResult<Bound<'py, PyAny>> {
+    match class {
+        "Candidate" => {
+            let (names, candidate) = restored(state)?;
+            Ok(Bound::new(py, PyCandidate { names: Arc::new(names), candidate })?.into_any())
+        }
+        "Contact" => {
+            let (names, contact, candidates): (Names, _, _) = restored(state)?;
+            Ok(Bound::new(py, PyContact::new(Arc::new(names), contact, candidates))?.into_any())
+        }
+        _ => {
+            let (names, isolation) = restored(state)?;
+            let wrapped = PyOnceLock::new();
+            Ok(Bound::new(py, PyIsolation { names: Arc::new(names), isolation, wrapped })?.into_any())
+        }
+    }
 }
 
 /// Names of links.
-pub fn names<'py>(py: Python<'py>, robot: &Robot, links: &[LinkIndex]) -> PyResult<Bound<'py, PyTuple>> {
-    PyTuple::new(py, links.iter().map(|link| &robot[*link].name))
+pub fn link_names<'py>(py: Python<'py>, names: &Names, links: &[LinkIndex]) -> PyResult<Bound<'py, PyTuple>> {
+    PyTuple::new(py, links.iter().map(|link| names.link(*link)))
 }
 
 #[pymethods]
@@ -196,7 +269,7 @@ impl PyIsolation {
     /// The contacts, farthest from the base first.
     #[getter]
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        contacts(py, &self.robot, &self.sensors, &self.isolation)
+        contacts(py, &self.names, &self.isolation, &self.wrapped)
     }
 
     /// Components of the contacts' wrenches that the torques leave open (Vorndamme 2017, eq. 31).
@@ -214,7 +287,7 @@ impl PyIsolation {
     /// Links that may carry a contact, likeliest first.
     #[getter]
     fn link_candidates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        names(py, &self.robot, &self.isolation.link_candidates)
+        link_names(py, &self.names, &self.isolation.link_candidates)
     }
 
     /// Whether there were more contacts than `max_contacts`, more hits of a line than are kept (the nearest are), or more
@@ -222,6 +295,15 @@ impl PyIsolation {
     #[getter]
     fn truncated(&self) -> bool {
         self.isolation.truncated
+    }
+
+    /// As plain Python data: numbers, strings, lists and dicts, `None` for what is undetermined.
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        to_dict(slf, &["contacts", "rank_deficit", "residual", "link_candidates", "truncated"])
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, "Isolation", &(&*self.names, &self.isolation))
     }
 
     fn __repr__(&self) -> String {
@@ -253,10 +335,10 @@ pub fn contact_count(object: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
 /// contacts are meant and not reported (eq. 20). `max_contacts`: reported at most. `pushing`: forces push on the surface
 /// (if False the point cannot be determined: `located` is False). `locate_within` [m], default 0.05: a contact is located
 /// if 90 % of the places that explain the torques are within this distance of its point. Raises `InputError` that names the argument.
-#[pyclass(frozen, name = "ContactIsolator", module = "contactsense._core")]
+#[pyclass(frozen, name = "ContactIsolator", module = "contactsense")]
 pub struct PyContactIsolator {
-    robot: Arc<Robot>,
-    sensors: Arc<[String]>,
+    robot: Py<PyRobot>,
+    names: Arc<Names>,
     state: Mutex<State>,
 }
 
@@ -306,8 +388,19 @@ impl PyContactIsolator {
         let shared = robot.get().0.clone();
         let isolator = ContactIsolator::new(shared.clone(), &options);
         let isolator = isolator.map_err(|error| to_python(robot.py(), error))?;
-        let sensors = isolator.sensor_names().into();
-        Ok(Self { robot: shared, sensors, state: Mutex::new(State { isolator, wrenches: vec![] }) })
+        let names = Names::new(&shared, isolator.sensor_names());
+        Ok(Self { robot: robot.unbind(), names, state: Mutex::new(State { isolator, wrenches: vec![] }) })
+    }
+
+    /// The robot whose contacts are isolated.
+    #[getter]
+    fn robot(&self, py: Python<'_>) -> Py<PyRobot> {
+        self.robot.clone_ref(py)
+    }
+
+    fn __repr__(&self) -> String {
+        let (name, sensors) = (self.robot.get().0.name(), self.names.sensors.len());
+        format!("ContactIsolator('{name}', {sensors} sensors)")
     }
 
     /// Contacts that explain the external torque `tau_ext` `(nv,)` at the configuration `q` `(nq,)`.
@@ -332,6 +425,6 @@ impl PyContactIsolator {
         wrenches.extend(given.iter().map(|row| row.map(Vector6::from)));
         let isolation = isolator.isolate_sensed(q.slice(), tau_ext.slice(), wrenches);
         let isolation = isolation.map_err(|error| to_python(py, error))?.clone();
-        Ok(PyIsolation { robot: self.robot.clone(), sensors: self.sensors.clone(), isolation })
+        Ok(PyIsolation { names: self.names.clone(), isolation, wrapped: PyOnceLock::new() })
     }
 }

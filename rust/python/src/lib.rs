@@ -13,14 +13,31 @@ mod errors;
 mod estimate;
 mod isolator;
 mod monitor;
+mod names;
 mod noise;
 mod observer;
 mod particle;
+mod plain;
 mod returned;
 mod robot;
 mod sensor;
 mod surface;
 mod urdf;
+
+/// An object of a class that was pickled, from its state.
+#[pyfunction]
+fn _restore<'py>(py: Python<'py>, class: &str, state: &[u8]) -> PyResult<Bound<'py, PyAny>> {
+    match class {
+        "Candidate" | "Contact" | "Isolation" => isolator::restore(py, class, state),
+        "ContactReport" => monitor::restore(py, state),
+        "Mode" | "ContactEstimate" => estimate::restore(py, class, state),
+        "NoiseModel" => Ok(Bound::new(py, noise::PyNoiseModel(plain::restored(state)?))?.into_any()),
+        "ForceTorqueSensor" => {
+            Ok(Bound::new(py, sensor::PyForceTorqueSensor(plain::restored(state)?))?.into_any())
+        }
+        other => Err(errors::input(py, format!("class: there is no '{other}' to restore"))),
+    }
+}
 
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -29,6 +46,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     errors::register(module)?;
     module.add_function(wrap_pyfunction!(urdf::_checked_urdf, module)?)?;
     module.add_function(wrap_pyfunction!(urdf::_robot_from_urdf, module)?)?;
+    module.add_function(wrap_pyfunction!(_restore, module)?)?;
     module.add_class::<robot::PyRobot>()?;
     module.add_class::<surface::PySurface>()?;
     module.add_class::<surface::ClosestPoints>()?;

@@ -3,28 +3,54 @@
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
-use contactsense::robot::Robot;
 use contactsense::Sample;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyDict, PyTuple};
 
 use crate::arguments::{pushing, robot, sole, Number};
 use crate::arrays::{Readings, Vector};
 use crate::errors::to_python;
-use crate::isolator::{contact_count, contacts, names};
+use crate::isolator::{contact_count, contacts, link_names};
+use crate::names::Names;
 use crate::observer::scalar_or_vector;
-use crate::returned::wrench_rows;
+use crate::plain::{reduced, restored, to_dict, Reduced};
+use crate::returned::{from_rows, read_only, result, wrench_rows};
 use crate::robot::PyRobot;
 use crate::sensor::{sensor_names, sensors, wrench_thresholds};
 
 /// What the monitor says of one tick.
-#[pyclass(frozen, name = "ContactReport", module = "contactsense._core")]
+#[pyclass(frozen, name = "ContactReport", module = "contactsense")]
 pub struct PyContactReport {
-    robot: Arc<Robot>,
-    sensors: Arc<[String]>,
+    names: Arc<Names>,
     report: ContactReport,
     acceleration: Vec<f64>,
+    wrapped: PyOnceLock<Py<PyTuple>>,
+}
+
+/// What `to_dict` of a report holds.
+const REPORT: [&str; 13] = [
+    "time",
+    "collision",
+    "onset",
+    "links",
+    "external_torque",
+    "collision_torque",
+    "acceleration",
+    "wrenches",
+    "sensors_left_out",
+    "joints_left_out",
+    "contacts",
+    "remainder_learned",
+    "truncated",
+];
+
+/// A report that was pickled.
+pub fn restore<'py>(py: Python<'py>, state: &[u8]) -> PyResult<Bound<'py, PyAny>> {
+    let (names, report, acceleration): (Names, _, _) = restored(state)?;
+    let (names, wrapped) = (Arc::new(names), PyOnceLock::new());
+    Ok(Bound::new(py, PyContactReport { names, report, acceleration, wrapped })?.into_any())
 }
 
 #[pymethods]
@@ -58,19 +84,19 @@ impl PyContactReport {
     /// the next.
     #[getter]
     fn links<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        names(py, &self.robot, &self.report.links)
+        link_names(py, &self.names, &self.report.links)
     }
 
     /// Of all contacts, `(nv,)` [Nm, N], free of the tracked bias.
     #[getter]
     fn external_torque<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.report.external_torque)
+        result(py, &self.report.external_torque)
     }
 
     /// `external_torque` without wanted contacts, `(nv,)` [Nm, N]; zero at joints that are left out.
     #[getter]
     fn collision_torque<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.report.collision_torque)
+        result(py, &self.report.collision_torque)
     }
 
     /// The external wrench that each sensor sees, `(n_sensors, 6)` [N, Nm]: on the robot, world axes, at the sensor's
@@ -83,27 +109,26 @@ impl PyContactReport {
     /// Names of the sensors without a reading in this tick.
     #[getter]
     fn sensors_left_out<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        PyTuple::new(py, self.report.sensors_left_out.iter().map(|sensor| &self.sensors[sensor.get()]))
+        PyTuple::new(py, self.report.sensors_left_out.iter().map(|sensor| &self.names.sensors[sensor.get()]))
     }
 
     /// Names of the joints whose torques say nothing of a collision, since a wanted contact loads them unmeasured: those
     /// behind its sensor, and while that gives no reading (and a little after) those between it and the base.
     #[getter]
     fn joints_left_out<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        let joints = self.robot.joint_names();
-        PyTuple::new(py, self.report.joints_left_out.iter().map(|joint| &joints[*joint]))
+        PyTuple::new(py, self.report.joints_left_out.iter().map(|joint| &self.names.joints[*joint]))
     }
 
     /// Estimated acceleration, `(nv,)`.
     #[getter]
     fn acceleration<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.acceleration)
+        result(py, &self.acceleration)
     }
 
     /// The contacts; empty while there is no collision.
     #[getter]
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        contacts(py, &self.robot, &self.sensors, &self.report.isolation)
+        contacts(py, &self.names, &self.report.isolation, &self.wrapped)
     }
 
     /// Whether there were more contacts than `max_contacts`, more hits of a line than are kept (the nearest are), or more
@@ -111,6 +136,15 @@ impl PyContactReport {
     #[getter]
     fn truncated(&self) -> bool {
         self.report.isolation.truncated
+    }
+
+    /// As plain Python data: numbers, strings, lists and dicts, `None` for what is undetermined.
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        to_dict(slf, &REPORT)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, "ContactReport", &(&*self.names, &self.report, &self.acceleration))
     }
 
     fn __repr__(&self) -> String {
@@ -137,11 +171,11 @@ impl PyContactReport {
 /// keep after it, scalar or `(nv,)`, default 0.2; such a remainder becomes the bias up to two thresholds. `hold_time` [s], default 0.02: a signal stays on so
 /// long after it was last over its threshold. `max_contacts`, `pushing`, `locate_within`: as in `ContactIsolator`. Raises `InputError` that
 /// names the argument.
-#[pyclass(frozen, name = "ContactMonitor", module = "contactsense._core")]
+#[pyclass(frozen, name = "ContactMonitor", module = "contactsense")]
 pub struct PyContactMonitor {
     robot: Py<PyRobot>,
     monitor: Mutex<ContactMonitor>,
-    sensors: Arc<[String]>,
+    names: Arc<Names>,
 }
 
 impl PyContactMonitor {
@@ -212,8 +246,8 @@ impl PyContactMonitor {
         }
         let monitor = ContactMonitor::new(robot.get().0.clone(), &options);
         let monitor = monitor.map_err(|error| to_python(robot.py(), error))?;
-        let sensors = monitor.sensor_names().into();
-        Ok(Self { robot: robot.unbind(), sensors, monitor: Mutex::new(monitor) })
+        let names = Names::new(monitor.robot(), monitor.sensor_names());
+        Ok(Self { robot: robot.unbind(), names, monitor: Mutex::new(monitor) })
     }
 
     /// One tick: `q` `(nq,)`, `v` `(nv,)`, `tau` and `friction` `(nv,)` or `(nv - 6,)` for a floating base.
@@ -264,8 +298,8 @@ impl PyContactMonitor {
         let mut monitor = self.sole(py)?;
         let report = monitor.update(&sample).map_err(|error| to_python(py, error))?.clone();
         let acceleration = monitor.acceleration().to_vec();
-        let (robot, sensors) = (monitor.robot().clone(), self.sensors.clone());
-        Ok(PyContactReport { robot, sensors, report, acceleration })
+        let (names, wrapped) = (self.names.clone(), PyOnceLock::new());
+        Ok(PyContactReport { names, report, acceleration, wrapped })
     }
 
     /// The robot that is monitored.
@@ -285,9 +319,65 @@ impl PyContactMonitor {
     fn bias<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let monitor = self.sole(py)?;
         Ok(match monitor.bias() {
-            Some(bias) => PyArray1::from_slice(py, bias),
-            None => PyArray1::zeros(py, monitor.robot().nv(), false),
+            Some(bias) => result(py, bias),
+            None => read_only(PyArray1::zeros(py, monitor.robot().nv(), false)),
         })
+    }
+
+    /// Thresholds on the external torque, `(nv,)` [Nm, N]; settable between two ticks, to a scalar or `(nv,)`.
+    ///
+    /// Bias and external torque stay as they are; a contact stays on for the hold time. The greatest bias follows, as it
+    /// is counted in thresholds.
+    #[getter]
+    fn torque_threshold<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(result(py, self.sole(py)?.torque_threshold()))
+    }
+
+    #[setter]
+    fn set_torque_threshold(&self, threshold: &Bound<'_, PyAny>) -> PyResult<()> {
+        let py = threshold.py();
+        let threshold = scalar_or_vector("torque_threshold", threshold)?;
+        self.sole(py)?.set_torque_threshold(&threshold).map_err(|error| to_python(py, error))
+    }
+
+    /// Thresholds on the sensors' external wrenches, `(n_sensors, 6)` [N, Nm]; settable to a scalar, `(6,)` or
+    /// `(n_sensors, 6)`.
+    #[getter]
+    fn wrench_threshold<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let monitor = self.sole(py)?;
+        let given = &monitor.options().isolation.wrench_threshold;
+        let row = |sensor: usize| match given.as_slice() {
+            [one] => [*one; 6],
+            [a, b, c, d, e, f] => [*a, *b, *c, *d, *e, *f],
+            all => std::array::from_fn(|k| all[6 * sensor + k]),
+        };
+        from_rows(py, (0..self.names.sensors.len()).map(row)).map(read_only)
+    }
+
+    #[setter]
+    fn set_wrench_threshold(&self, threshold: &Bound<'_, PyAny>) -> PyResult<()> {
+        let py = threshold.py();
+        let threshold = wrench_thresholds(threshold)?;
+        self.sole(py)?.set_wrench_threshold(&threshold).map_err(|error| to_python(py, error))
+    }
+
+    /// The observer's gain, `(nv,)` [1/s]; settable to a scalar or `(nv,)`: the external torque goes on from where it is.
+    #[getter]
+    fn observer_gain<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(result(py, self.sole(py)?.observer_gain()))
+    }
+
+    #[setter]
+    fn set_observer_gain(&self, gain: &Bound<'_, PyAny>) -> PyResult<()> {
+        let py = gain.py();
+        let gain = scalar_or_vector("observer_gain", gain)?;
+        self.sole(py)?.set_observer_gain(&gain).map_err(|error| to_python(py, error))
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let monitor = self.sole(py)?;
+        let (name, dt, sensors) = (monitor.robot().name(), monitor.dt(), self.names.sensors.len());
+        Ok(format!("ContactMonitor('{name}', dt={dt}, {sensors} sensors, time={:.4})", monitor.time()))
     }
 
     /// Forgets all ticks, the bias too.

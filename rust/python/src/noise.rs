@@ -1,11 +1,12 @@
 //! `NoiseModel`.
 
 use contactsense::NoiseModel;
-use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::errors::{input, to_python};
 use crate::observer::scalar_or_vector;
+use crate::plain::{reduced, Reduced};
+use crate::returned::result;
 
 /// Errors of the external torque of the untouched robot, each as one standard deviation. What says how large errors are
 /// takes it as `noise`.
@@ -15,7 +16,7 @@ use crate::observer::scalar_or_vector;
 /// matrix; what is given an external torque leaves it out. `relative`, default 0.03: share of the contact's own torque; a
 /// tenth of it also of the largest one. `model` [Nm, N], default 0.1: slow errors left over (bias, friction, masses).
 /// Raises `InputError` that names the argument.
-#[pyclass(frozen, eq, skip_from_py_object, name = "NoiseModel", module = "contactsense._core")]
+#[pyclass(frozen, eq, skip_from_py_object, name = "NoiseModel", module = "contactsense")]
 #[derive(PartialEq, Clone)]
 pub struct PyNoiseModel(pub NoiseModel);
 
@@ -23,7 +24,7 @@ pub struct PyNoiseModel(pub NoiseModel);
 fn shown<'py>(py: Python<'py>, values: &[f64]) -> PyResult<Bound<'py, PyAny>> {
     match values {
         [value] => Ok(value.into_pyobject(py)?.into_any()),
-        _ => Ok(PyArray1::from_slice(py, values).into_any()),
+        _ => Ok(result(py, values).into_any()),
     }
 }
 
@@ -76,6 +77,10 @@ impl PyNoiseModel {
     #[getter]
     fn model<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         shown(py, &self.0.model)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, "NoiseModel", &self.0)
     }
 
     fn __repr__(&self) -> String {

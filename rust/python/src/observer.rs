@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 use crate::arguments::{number_if_any, robot, sole, Number};
 use crate::arrays::Vector;
 use crate::errors::to_python;
+use crate::returned::result;
 use crate::robot::PyRobot;
 
 /// A scalar, or one number per velocity variable.
@@ -27,12 +28,15 @@ pub fn scalar_or_vector(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<f
 ///
 /// `dt`: time between two calls [s]; `gain`: scalar or `(nv,)` [1/s], default 50. Raises `InputError` that names the
 /// argument.
-#[pyclass(frozen, name = "MomentumObserver", module = "contactsense._core")]
-pub struct PyMomentumObserver(Mutex<MomentumObserver>);
+#[pyclass(frozen, name = "MomentumObserver", module = "contactsense")]
+pub struct PyMomentumObserver {
+    robot: Py<PyRobot>,
+    observer: Mutex<MomentumObserver>,
+}
 
 impl PyMomentumObserver {
     fn sole(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, MomentumObserver>> {
-        sole(py, "MomentumObserver", &self.0)
+        sole(py, "MomentumObserver", &self.observer)
     }
 }
 
@@ -48,7 +52,8 @@ impl PyMomentumObserver {
         let py = robot.py();
         let gain = gain.map_or(Ok(vec![50.0]), |gain| scalar_or_vector("gain", gain))?;
         let observer = MomentumObserver::new(robot.get().0.clone(), dt.named("dt")?, &gain);
-        Ok(Self(Mutex::new(observer.map_err(|error| to_python(py, error))?)))
+        let observer = Mutex::new(observer.map_err(|error| to_python(py, error))?);
+        Ok(Self { robot: robot.unbind(), observer })
     }
 
     /// One tick; the external torque `(nv,)`, a fresh array. The first call sets the initial momentum, returns zeros.
@@ -78,9 +83,32 @@ impl PyMomentumObserver {
             sample = sample.dt(dt);
         }
         match observer.update(&sample) {
-            Ok(torque) => Ok(PyArray1::from_slice(py, torque)),
+            Ok(torque) => Ok(result(py, torque)),
             Err(error) => Err(to_python(py, error)),
         }
+    }
+
+    /// The robot observed.
+    #[getter]
+    fn robot(&self, py: Python<'_>) -> Py<PyRobot> {
+        self.robot.clone_ref(py)
+    }
+
+    /// Time between two calls that is assumed where `update` is given none [s].
+    #[getter]
+    fn dt(&self, py: Python<'_>) -> PyResult<f64> {
+        Ok(self.sole(py)?.dt())
+    }
+
+    /// The gain, `(nv,)` [1/s].
+    #[getter]
+    fn gain<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(result(py, self.sole(py)?.gain()))
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let observer = self.sole(py)?;
+        Ok(format!("MomentumObserver('{}', dt={})", observer.robot().name(), observer.dt()))
     }
 
     /// Forgets all ticks; the next call is a first call.
@@ -92,12 +120,12 @@ impl PyMomentumObserver {
     /// Of the last tick, `(nv,)`; a copy.
     #[getter]
     fn external_torque<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(PyArray1::from_slice(py, self.sole(py)?.external_torque()))
+        Ok(result(py, self.sole(py)?.external_torque()))
     }
 
     /// Estimated acceleration at the last tick, `(nv,)`: forward dynamics with the external torque.
     #[getter]
     fn acceleration<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(PyArray1::from_slice(py, self.sole(py)?.acceleration()))
+        Ok(result(py, self.sole(py)?.acceleration()))
     }
 }

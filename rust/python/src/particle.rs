@@ -8,23 +8,24 @@ use std::time::Duration;
 use contactsense::particle::{
     ContactParticleFilter, FilterEstimate, FilterOptions, ForceModel, Likelihood, Motion, Schedule,
 };
-use contactsense::robot::Robot;
-use numpy::{PyArray1, PyArray2};
+use numpy::{PyArray1, PyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyMapping, PyTuple};
 
 use crate::arguments::{number_if_any, robot, sole, whole, Number};
 use crate::arrays::Vector;
 use crate::errors::{input, to_python};
 use crate::estimate::PyContactEstimate;
+use crate::names::Names;
 use crate::noise::noise_model;
 use crate::observer::scalar_or_vector;
-use crate::returned::from_rows;
+use crate::plain::Reduced;
+use crate::returned::{from_rows, read_only, result};
 use crate::robot::PyRobot;
 use crate::sensor::names;
 
 /// A copy of the particles, one row each.
-#[pyclass(frozen, get_all, module = "contactsense._core")]
+#[pyclass(frozen, get_all, module = "contactsense")]
 pub struct Particles {
     /// `(n,)`, index into `robot.link_names`.
     link: Py<PyArray1<i64>>,
@@ -38,6 +39,42 @@ pub struct Particles {
     stiffness: Py<PyArray1<f64>>,
     /// `(n,)`, sums to one.
     weight: Py<PyArray1<f64>>,
+}
+
+#[pymethods]
+impl Particles {
+    #[new]
+    fn new(
+        link: Bound<'_, PyArray1<i64>>,
+        point: Bound<'_, PyArray2<f64>>,
+        normal: Bound<'_, PyArray2<f64>>,
+        force: Bound<'_, PyArray1<f64>>,
+        stiffness: Bound<'_, PyArray1<f64>>,
+        weight: Bound<'_, PyArray1<f64>>,
+    ) -> Self {
+        Self {
+            link: read_only(link).unbind(),
+            point: read_only(point).unbind(),
+            normal: read_only(normal).unbind(),
+            force: read_only(force).unbind(),
+            stiffness: read_only(stiffness).unbind(),
+            weight: read_only(weight).unbind(),
+        }
+    }
+
+    fn __len__(&self, py: Python<'_>) -> usize {
+        self.weight.bind(py).len()
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        let names = ["link", "point", "normal", "force", "stiffness", "weight"];
+        let columns = names.iter().map(|name| slf.getattr(*name)).collect::<PyResult<Vec<_>>>()?;
+        Ok((slf.get_type().into_any(), PyTuple::new(slf.py(), columns)?))
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        format!("Particles({} particles)", self.__len__(py))
+    }
 }
 
 /// Finds one contact anywhere on a robot from joint torques, by particles on its surface (Bimbo 2019).
@@ -61,10 +98,11 @@ pub struct Particles {
 /// `schedule`: None (by what the data show), "paper", or a dict of some of "sharpness" (alpha, [1/Nm]), "point_noise" [m],
 /// "force_noise" and "stiffness_noise" (relative), each a number or a pair (first, last), and "updates", after which the
 /// last is reached. Raises `InputError` that names the argument, and `MemoryError` where the particles do not fit.
-#[pyclass(frozen, name = "ContactParticleFilter", module = "contactsense._core")]
+#[pyclass(frozen, name = "ContactParticleFilter", module = "contactsense")]
 pub struct PyContactParticleFilter {
     filter: Mutex<ContactParticleFilter>,
-    robot: Arc<Robot>,
+    robot: Py<PyRobot>,
+    names: Arc<Names>,
 }
 
 impl PyContactParticleFilter {
@@ -160,10 +198,10 @@ impl PyContactParticleFilter {
             options.torque_threshold = Some(scalar_or_vector("torque_threshold", threshold)?);
         }
         options.schedule = read_schedule(py, schedule)?;
-        let robot = robot.get().0.clone();
-        let filter =
-            ContactParticleFilter::new(robot.clone(), options).map_err(|error| to_python(py, error))?;
-        Ok(Self { filter: Mutex::new(filter), robot })
+        let shared = robot.get().0.clone();
+        let names = Names::new(&shared, &[]);
+        let filter = ContactParticleFilter::new(shared, options).map_err(|error| to_python(py, error))?;
+        Ok(Self { filter: Mutex::new(filter), robot: robot.unbind(), names })
     }
 
     /// Takes in a configuration `q` `(nq,)` and the external torque `tau_ext` `(nv,)` measured there [Nm; N for sliding
@@ -195,7 +233,18 @@ impl PyContactParticleFilter {
         };
         let found = estimate.map_err(|error| to_python(py, error))?;
         let time = time.map_or(found.updates as f64, |time| time.0);
-        Ok(PyContactEstimate { links: sole.links().into(), robot: self.robot.clone(), found, time })
+        Ok(PyContactEstimate::new(self.names.clone(), sole.links().into(), found, time))
+    }
+
+    /// The robot that contacts are looked for on.
+    #[getter]
+    fn robot(&self, py: Python<'_>) -> Py<PyRobot> {
+        self.robot.clone_ref(py)
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let (name, count) = (self.robot.get().0.name(), self.sole(py)?.particles().len());
+        Ok(format!("ContactParticleFilter('{name}', {count} particles)"))
     }
 
     /// Forgets all updates.
@@ -209,19 +258,20 @@ impl PyContactParticleFilter {
     fn particles(&self, py: Python<'_>) -> PyResult<Particles> {
         let filter = self.sole(py)?;
         let columns = filter.particles();
-        let touchable = self.robot.touchable_links();
+        let touchable = self.robot.get().0.touchable_links();
         let number =
             |link: u32| touchable.iter().position(|l| l.get() == link as usize).map_or(-1, |k| k as i64);
         let count = columns.len();
         let points = (0..count).map(|k| filter.point(k).into());
         let normals = (0..count).map(|k| filter.normal(k).into());
         Ok(Particles {
-            link: PyArray1::from_iter(py, columns.link.iter().map(|&link| number(link))).unbind(),
-            point: from_rows::<3>(py, points)?.unbind(),
-            normal: from_rows::<3>(py, normals)?.unbind(),
-            force: PyArray1::from_iter(py, columns.force.iter().map(|force| force.max(0.0))).unbind(),
-            stiffness: PyArray1::from_slice(py, &columns.stiffness).unbind(),
-            weight: PyArray1::from_slice(py, filter.weights()).unbind(),
+            link: read_only(PyArray1::from_iter(py, columns.link.iter().map(|&link| number(link)))).unbind(),
+            point: read_only(from_rows::<3>(py, points)?).unbind(),
+            normal: read_only(from_rows::<3>(py, normals)?).unbind(),
+            force: read_only(PyArray1::from_iter(py, columns.force.iter().map(|force| force.max(0.0))))
+                .unbind(),
+            stiffness: result(py, &columns.stiffness).unbind(),
+            weight: result(py, filter.weights()).unbind(),
         })
     }
 }
@@ -319,16 +369,20 @@ fn read_schedule(py: Python<'_>, object: Option<&Bound<'_, PyAny>>) -> PyResult<
             _ => Err(unknown(py, "schedule", &name, "'adaptive', 'paper', or a dict")),
         };
     }
-    let Ok(given) = object.cast::<PyDict>() else {
+    let Ok(given) = object.cast::<PyMapping>() else {
         let given = object.repr()?;
-        return Err(input(py, format!("schedule: must be None, 'adaptive', 'paper' or a dict, not {given}")));
+        return Err(input(
+            py,
+            format!("schedule: must be None, 'adaptive', 'paper' or a mapping, not {given}"),
+        ));
     };
     let mut schedule = Schedule::paper();
     let Schedule::Explicit { sharpness, point_noise, force_noise, stiffness_noise, updates } = &mut schedule
     else {
         return Ok(schedule);
     };
-    for (key, value) in given {
+    for item in given.items()? {
+        let (key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>) = item.extract()?;
         let key: String = key.str()?.extract()?;
         let pair = match key.as_str() {
             "sharpness" => &mut *sharpness,

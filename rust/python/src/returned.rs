@@ -1,7 +1,8 @@
 //! Arrays that are returned, and memory for them.
 
 use nalgebra::{DMatrix, SVector, Vector6};
-use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use numpy::ndarray::Dimension;
+use numpy::{Element, PyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 
@@ -11,6 +12,17 @@ pub fn reserve<T>(vector: &mut Vec<T>, more: usize) -> PyResult<()> {
     let full = |_| PyMemoryError::new_err(format!("there is no memory for {bytes} more bytes"));
     // As `Vec::reserve` grows, so that repeated calls take linear time; exact where that is too much.
     vector.try_reserve(more).or_else(|_| vector.try_reserve_exact(more)).map_err(full)
+}
+
+/// An array that cannot be written: a change of it would change nothing else.
+pub fn read_only<T: Element, D: Dimension>(array: Bound<'_, PyArray<T, D>>) -> Bound<'_, PyArray<T, D>> {
+    array.readwrite().make_nonwriteable();
+    array
+}
+
+/// A `(n,)` array of a result.
+pub fn result<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArray1<f64>> {
+    read_only(PyArray1::from_slice(py, values))
 }
 
 /// A fresh `(rows, columns)` array.
@@ -39,15 +51,15 @@ pub fn pose<'py>(py: Python<'py>, pose: &contactsense::spatial::Pose) -> PyResul
     from_rows(py, [row(0), row(1), row(2), [0.0, 0.0, 0.0, 1.0]].into_iter())
 }
 
-/// A fresh `(N,)` array; NaN where there is no vector.
+/// A `(N,)` array of a result; NaN where there is no vector.
 pub fn vector<const N: usize>(py: Python<'_>, vector: Option<SVector<f64, N>>) -> Bound<'_, PyArray1<f64>> {
-    PyArray1::from_slice(py, vector.unwrap_or_else(|| SVector::repeat(f64::NAN)).as_slice())
+    result(py, vector.unwrap_or_else(|| SVector::repeat(f64::NAN)).as_slice())
 }
 
-/// A fresh `(n, 6)` array of wrenches; NaN where there is none.
+/// A `(n, 6)` array of wrenches of a result; NaN where there is none.
 pub fn wrench_rows<'py>(
     py: Python<'py>,
     wrenches: &[Option<Vector6<f64>>],
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    from_rows(py, wrenches.iter().map(|wrench| wrench.map_or([f64::NAN; 6], Into::into)))
+    from_rows(py, wrenches.iter().map(|wrench| wrench.map_or([f64::NAN; 6], Into::into))).map(read_only)
 }

@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use contactsense::robot::{LinkIndex, Robot};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
-use numpy::ndarray::Dimension;
-use numpy::{PyArray, PyArray1, PyArray2, PyArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyMapping, PyTuple};
 
@@ -13,11 +12,11 @@ use crate::arguments::{number, text, whole};
 use crate::arrays::Vector;
 use crate::description::{description as read_description, placement, square};
 use crate::errors::{detached, input, to_python};
-use crate::returned::{matrix, pose};
+use crate::returned::{matrix, pose, read_only};
 use crate::surface::PySurface;
 
 /// A robot: immutable, shareable between threads.
-#[pyclass(frozen, subclass, name = "Robot", module = "contactsense._core")]
+#[pyclass(frozen, subclass, name = "Robot", module = "contactsense")]
 pub struct PyRobot(pub Arc<Robot>);
 
 impl PyRobot {
@@ -317,11 +316,12 @@ impl PyRobot {
     /// The surface of a link, in the link frame.
     ///
     /// Raises `InputError` where the link is unknown or has no surface.
-    fn surface(&self, py: Python<'_>, link: &Bound<'_, PyAny>) -> PyResult<PySurface> {
-        let index = self.link(link)?;
-        if self.0[index].surface.is_none() {
+    fn surface(slf: &Bound<'_, Self>, link: &Bound<'_, PyAny>) -> PyResult<PySurface> {
+        let (py, this) = (slf.py(), slf.get());
+        let index = this.link(link)?;
+        if this.0[index].surface.is_none() {
             let names: Vec<&str> =
-                self.0.touchable_links().iter().map(|i| self.0[*i].name.as_str()).collect();
+                this.0.touchable_links().iter().map(|i| this.0[*i].name.as_str()).collect();
             return Err(input(
                 py,
                 format!(
@@ -331,24 +331,24 @@ impl PyRobot {
                 ),
             ));
         }
-        Ok(PySurface { robot: self.0.clone(), link: index })
+        Ok(PySurface { robot: this.0.clone(), link: index, owner: slf.clone().into_any().unbind() })
     }
 
     fn __repr__(&self) -> String {
         format!(
-            "Robot('{}', {} joints, {} links with surface, nq={}, nv={})",
+            "Robot('{}', {} joints, {} links with surface, nq={}, nv={}{})",
             self.0.name(),
             self.0.joint_names().len(),
             self.0.touchable_links().len(),
             self.0.nq(),
-            self.0.nv()
+            self.0.nv(),
+            match self.0.warnings().len() {
+                0 => String::new(),
+                1 => ", 1 warning".to_owned(),
+                count => format!(", {count} warnings"),
+            }
         )
     }
-}
-
-fn read_only<D: Dimension>(array: Bound<'_, PyArray<f64, D>>) -> Bound<'_, PyArray<f64, D>> {
-    array.readwrite().make_nonwriteable();
-    array
 }
 
 /// `{name: value}`.

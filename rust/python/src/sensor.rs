@@ -10,7 +10,8 @@ use crate::arguments::{number_if_any, shown, text};
 use crate::arrays::rows;
 use crate::description::placement;
 use crate::errors::{input, refused};
-use crate::returned::pose;
+use crate::plain::{reduced, Reduced};
+use crate::returned::{pose, read_only};
 
 const LAST_ROW: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
 
@@ -19,7 +20,7 @@ const LAST_ROW: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
 /// `pose`: `(4, 4)`, the sensor frame in the link's, default the link frame itself. A reading is (force, moment) about
 /// the sensor frame's origin, in its axes [N, Nm]; `convention` "load": what the distal side exerts on the sensor (a free
 /// hand at rest: its weight), "support": the opposite. Raises `InputError` that names the argument.
-#[pyclass(frozen, eq, skip_from_py_object, name = "ForceTorqueSensor", module = "contactsense._core")]
+#[pyclass(frozen, eq, skip_from_py_object, name = "ForceTorqueSensor", module = "contactsense")]
 #[derive(PartialEq, Clone)]
 pub struct PyForceTorqueSensor(pub ForceTorqueSensor);
 
@@ -79,13 +80,17 @@ impl PyForceTorqueSensor {
     /// The sensor frame in the link's, `(4, 4)`; a copy.
     #[getter]
     fn pose<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        pose(py, &self.0.pose)
+        pose(py, &self.0.pose).map(read_only)
     }
 
     /// "load" or "support".
     #[getter]
     fn convention(&self) -> &'static str {
         self.0.convention.name()
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, "ForceTorqueSensor", &self.0)
     }
 
     fn __hash__(&self) -> u64 {

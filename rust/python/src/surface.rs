@@ -5,14 +5,16 @@ use std::sync::Arc;
 use contactsense::robot::{LinkIndex, Robot};
 use contactsense::surface::{RayHit, Surface};
 use nalgebra::Vector3;
-use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
 use crate::arguments::whole;
 use crate::arrays::rows;
 use crate::columns::Columns;
 use crate::errors::{detached, input, to_python};
-use crate::returned::{from_rows, reserve};
+use crate::plain::Reduced;
+use crate::returned::{from_rows, read_only, reserve};
 use contactsense::Error;
 
 /// Samples of one call at most: they fit into memory.
@@ -26,14 +28,16 @@ const BLOCK: usize = 256;
 const RAY_HITS: usize = 64;
 
 /// One link's surface, in the link frame.
-#[pyclass(frozen, name = "Surface", module = "contactsense._core")]
+#[pyclass(frozen, name = "Surface", module = "contactsense")]
 pub struct PySurface {
     pub robot: Arc<Robot>,
     pub link: LinkIndex,
+    /// The robot that it was asked of.
+    pub owner: Py<PyAny>,
 }
 
 /// Nearest points, one row a query.
-#[pyclass(frozen, get_all, module = "contactsense._core")]
+#[pyclass(frozen, get_all, module = "contactsense")]
 pub struct ClosestPoints {
     /// `(n, 3)`, link frame [m].
     points: Py<PyArray2<f64>>,
@@ -46,7 +50,7 @@ pub struct ClosestPoints {
 }
 
 /// Every hit of a batch of rays, sorted per ray.
-#[pyclass(frozen, get_all, module = "contactsense._core")]
+#[pyclass(frozen, get_all, module = "contactsense")]
 pub struct RayHits {
     /// `(k,)`, row of the query.
     ray: Py<PyArray1<i64>>,
@@ -61,7 +65,7 @@ pub struct RayHits {
 }
 
 /// Random points of a surface.
-#[pyclass(frozen, get_all, module = "contactsense._core")]
+#[pyclass(frozen, get_all, module = "contactsense")]
 pub struct SurfaceSamples {
     /// `(n, 3)`, link frame [m].
     points: Py<PyArray2<f64>>,
@@ -69,6 +73,102 @@ pub struct SurfaceSamples {
     normals: Py<PyArray2<f64>>,
     /// `(n,)`; -1 on an exact primitive.
     triangles: Py<PyArray1<i64>>,
+}
+
+#[pymethods]
+impl ClosestPoints {
+    #[new]
+    fn new(
+        points: Bound<'_, PyArray2<f64>>,
+        normals: Bound<'_, PyArray2<f64>>,
+        distances: Bound<'_, PyArray1<f64>>,
+        triangles: Bound<'_, PyArray1<i64>>,
+    ) -> Self {
+        Self {
+            points: read_only(points).unbind(),
+            normals: read_only(normals).unbind(),
+            distances: read_only(distances).unbind(),
+            triangles: read_only(triangles).unbind(),
+        }
+    }
+
+    fn __len__(&self, py: Python<'_>) -> usize {
+        self.distances.bind(py).len()
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        let names = ["points", "normals", "distances", "triangles"];
+        let columns = names.iter().map(|name| slf.getattr(*name)).collect::<PyResult<Vec<_>>>()?;
+        Ok((slf.get_type().into_any(), PyTuple::new(slf.py(), columns)?))
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        format!("ClosestPoints({} points)", self.__len__(py))
+    }
+}
+
+#[pymethods]
+impl RayHits {
+    #[new]
+    fn new(
+        ray: Bound<'_, PyArray1<i64>>,
+        distance: Bound<'_, PyArray1<f64>>,
+        point: Bound<'_, PyArray2<f64>>,
+        normal: Bound<'_, PyArray2<f64>>,
+        triangle: Bound<'_, PyArray1<i64>>,
+    ) -> Self {
+        Self {
+            ray: read_only(ray).unbind(),
+            distance: read_only(distance).unbind(),
+            point: read_only(point).unbind(),
+            normal: read_only(normal).unbind(),
+            triangle: read_only(triangle).unbind(),
+        }
+    }
+
+    fn __len__(&self, py: Python<'_>) -> usize {
+        self.distance.bind(py).len()
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        let names = ["ray", "distance", "point", "normal", "triangle"];
+        let columns = names.iter().map(|name| slf.getattr(*name)).collect::<PyResult<Vec<_>>>()?;
+        Ok((slf.get_type().into_any(), PyTuple::new(slf.py(), columns)?))
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        format!("RayHits({} hits)", self.__len__(py))
+    }
+}
+
+#[pymethods]
+impl SurfaceSamples {
+    #[new]
+    fn new(
+        points: Bound<'_, PyArray2<f64>>,
+        normals: Bound<'_, PyArray2<f64>>,
+        triangles: Bound<'_, PyArray1<i64>>,
+    ) -> Self {
+        Self {
+            points: read_only(points).unbind(),
+            normals: read_only(normals).unbind(),
+            triangles: read_only(triangles).unbind(),
+        }
+    }
+
+    fn __len__(&self, py: Python<'_>) -> usize {
+        self.triangles.bind(py).len()
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        let names = ["points", "normals", "triangles"];
+        let columns = names.iter().map(|name| slf.getattr(*name)).collect::<PyResult<Vec<_>>>()?;
+        Ok((slf.get_type().into_any(), PyTuple::new(slf.py(), columns)?))
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        format!("SurfaceSamples({} points)", self.__len__(py))
+    }
 }
 
 impl PySurface {
@@ -83,7 +183,7 @@ impl PySurface {
     /// Vertices, `(n, 3)`, link frame [m]; of exact primitives a tessellation, for display.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        from_rows(py, self.core(py)?.vertices().iter().copied())
+        from_rows(py, self.core(py)?.vertices().iter().copied()).map(read_only)
     }
 
     /// Vertex indices, `(m, 3)`, counter-clockwise seen from outside.
@@ -91,7 +191,7 @@ impl PySurface {
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
         let triangles = self.core(py)?.triangles();
         let flat: Vec<i64> = triangles.iter().flatten().map(|index| i64::from(*index)).collect();
-        PyArray1::from_vec(py, flat).reshape([triangles.len(), 3])
+        Ok(read_only(PyArray1::from_vec(py, flat).reshape([triangles.len(), 3])?))
     }
 
     /// Sum of the parts' areas [m^2]; where parts overlap, both count.
@@ -104,6 +204,20 @@ impl PySurface {
     #[getter]
     fn watertight(&self, py: Python<'_>) -> PyResult<bool> {
         Ok(self.core(py)?.watertight())
+    }
+
+    /// With its robot.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let ask = self.owner.bind(py).getattr("surface")?;
+        Ok((ask, PyTuple::new(py, [&self.robot[self.link].name])?))
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let surface = self.core(py)?;
+        let (link, closed) =
+            (&self.robot[self.link].name, if surface.watertight() { "True" } else { "False" });
+        let (count, area) = (surface.triangles().len(), surface.area());
+        Ok(format!("Surface('{link}', {count} triangles, area={area:.4} m^2, watertight={closed})"))
     }
 
     /// The nearest surface point of each query; the minimum over the link's parts.
@@ -130,7 +244,7 @@ impl PySurface {
         Ok(ClosestPoints {
             points,
             normals,
-            distances: PyArray1::from_vec(py, distances).unbind(),
+            distances: read_only(PyArray1::from_vec(py, distances)).unbind(),
             triangles,
         })
     }
@@ -184,8 +298,8 @@ impl PySurface {
         found.extend(&hits, |hit| (&hit.point, &hit.normal, hit.triangle))?;
         let (point, normal, triangle) = found.arrays(py)?;
         Ok(RayHits {
-            ray: PyArray1::from_vec(py, rays).unbind(),
-            distance: PyArray1::from_vec(py, distances).unbind(),
+            ray: read_only(PyArray1::from_vec(py, rays)).unbind(),
+            distance: read_only(PyArray1::from_vec(py, distances)).unbind(),
             point,
             normal,
             triangle,

@@ -113,6 +113,12 @@ impl Detector {
         &self.links
     }
 
+    /// Replaces both thresholds by checked ones; signals that are on stay on for their hold time.
+    pub fn set_thresholds(&mut self, threshold: Vec<f64>, wrench_threshold: Vec<Vector6<f64>>) {
+        self.joints.set_threshold(threshold);
+        self.wrench_threshold = wrench_threshold;
+    }
+
     /// The thresholds `(nv,)`.
     pub fn threshold(&self) -> &[f64] {
         self.joints.threshold()

@@ -66,6 +66,11 @@ impl Gate {
         &self.threshold
     }
 
+    /// Replaces the thresholds by as many checked ones; what is on stays on for its hold time.
+    pub fn set_threshold(&mut self, threshold: Vec<f64>) {
+        self.threshold = threshold;
+    }
+
     /// Turns all signals off.
     pub fn reset(&mut self) {
         self.remaining.fill(-1.0);

@@ -33,6 +33,13 @@ pub(crate) struct ReleaseRule {
     pub is_force: Vec<bool>,
 }
 
+impl ReleaseRule {
+    /// Greatest norm of a remainder's torques (Nm) and of its forces (N).
+    fn largest_remainder(&self) -> [f64; 2] {
+        norms(self.threshold.iter().copied(), &self.is_force).map(|norm| LARGEST_REMAINDER * norm)
+    }
+}
+
 /// Watches the torque during a contact for its fall to a small remainder that stands still.
 #[derive(Debug, Clone)]
 pub(crate) struct ReleaseDetector {
@@ -52,10 +59,8 @@ pub(crate) struct ReleaseDetector {
 impl ReleaseDetector {
     pub fn new(rule: ReleaseRule) -> Self {
         let nv = rule.threshold.len();
-        let limit =
-            norms(rule.threshold.iter().copied(), &rule.is_force).map(|norm| LARGEST_REMAINDER * norm);
         Self {
-            limit,
+            limit: rule.largest_remainder(),
             mean: vec![0.0; nv],
             samples: 0,
             still_time: 0.0,
@@ -63,6 +68,12 @@ impl ReleaseDetector {
             greatest: [0.0; 2],
             rule,
         }
+    }
+
+    /// Replaces the rule; what was seen of this contact stays.
+    pub fn set_rule(&mut self, rule: ReleaseRule) {
+        self.limit = rule.largest_remainder();
+        self.rule = rule;
     }
 
     /// A step of `dt` (s) in contact with a torque still including the bias; true when the contact is over and

@@ -102,6 +102,11 @@ impl BiasTracker {
         self.bias.copy_from_slice(bias);
     }
 
+    /// Replaces the greatest bias of each joint (Nm, N).
+    pub fn set_limit(&mut self, limit: Vec<f64>) {
+        self.limit = limit;
+    }
+
     /// The bias `(nv,)`.
     pub fn bias(&self) -> &[f64] {
         &self.bias

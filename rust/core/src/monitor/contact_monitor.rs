@@ -42,13 +42,14 @@ use crate::sensor::{SensorIndex, SensorTree};
 /// ```
 #[derive(Debug, Clone)]
 pub struct ContactMonitor {
-    robot: Arc<Robot>,
+    pub(super) robot: Arc<Robot>,
+    pub(super) options: MonitorOptions,
     clock: SampleClock,
-    observer: MomentumObserver,
-    bias: Option<BiasTracker>,
-    release: ReleaseDetector,
-    detector: Detector,
-    isolator: ContactIsolator,
+    pub(super) observer: MomentumObserver,
+    pub(super) bias: Option<BiasTracker>,
+    pub(super) release: ReleaseDetector,
+    pub(super) detector: Detector,
+    pub(super) isolator: ContactIsolator,
     sensing: Option<Sensing>,
     report: ContactReport,
 }
@@ -60,15 +61,8 @@ impl ContactMonitor {
     /// [`crate::Error::Input`] names the option.
     pub fn new(robot: Arc<Robot>, options: &MonitorOptions) -> Result<Self> {
         let nv = robot.nv();
-        let observer =
-            MomentumObserver::new(robot.clone(), options.dt, &options.observer_gain).map_err(|error| {
-                match error {
-                    Error::Input { argument, problem } if argument == "gain" => {
-                        Error::input("observer_gain", problem)
-                    }
-                    other => other,
-                }
-            })?;
+        let observer = MomentumObserver::new(robot.clone(), options.dt, &options.observer_gain)
+            .map_err(|error| error.for_argument("gain", "observer_gain"))?;
         let tree = SensorTree::new(&robot, &options.isolation.sensors)?;
         let (threshold, _) = options.isolation.threshold_and_noise(&robot)?;
         let detector = Detector::new(
@@ -92,6 +86,7 @@ impl ContactMonitor {
         let isolator = ContactIsolator::new(robot.clone(), &options.isolation)?;
         let sensors = options.isolation.sensors.len();
         let mut monitor = Self {
+            options: options.clone(),
             clock: SampleClock::new(options.dt),
             observer,
             detector,

@@ -6,6 +6,7 @@ mod contact_monitor;
 mod options;
 mod report;
 mod sensing;
+mod settings;
 
 pub use contact_monitor::ContactMonitor;
 pub use options::MonitorOptions;

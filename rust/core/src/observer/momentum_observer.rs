@@ -65,10 +65,7 @@ impl MomentumObserver {
     pub fn new(robot: Arc<Robot>, dt: f64, gain: &[f64]) -> Result<Self> {
         check_time_step(dt)?;
         let nv = robot.nv();
-        let gain = robot.per_velocity("gain", gain)?;
-        if gain.iter().any(|gain| *gain <= 0.0) {
-            return Err(Error::input("gain", "must be positive [1/s]"));
-        }
+        let gain = checked_gain(&robot, gain)?;
         let zeros = vec![0.0; nv];
         Ok(Self {
             dt,
@@ -173,6 +170,22 @@ impl MomentumObserver {
         &self.gain
     }
 
+    /// Time between two calls that is assumed where a sample has none (s).
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    /// Sets the gain (1/s), per velocity variable or one for all; the estimate goes on from where it is.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where a gain is not positive and finite, or their number is wrong.
+    pub fn set_gain(&mut self, gain: &[f64]) -> Result<()> {
+        let gain = checked_gain(&self.robot, gain)?;
+        self.decay = gain.iter().map(|gain| (-gain * self.dt).exp()).collect();
+        self.gain = gain;
+        Ok(())
+    }
+
     /// Poses and velocities of the last step.
     pub fn kinematics(&self) -> &Kinematics {
         &self.kinematics
@@ -182,4 +195,12 @@ impl MomentumObserver {
     pub fn robot(&self) -> &Arc<Robot> {
         &self.robot
     }
+}
+
+fn checked_gain(robot: &Robot, gain: &[f64]) -> Result<Vec<f64>> {
+    let gain = robot.per_velocity("gain", gain)?;
+    if gain.iter().any(|gain| *gain <= 0.0) {
+        return Err(Error::input("gain", "must be positive [1/s]"));
+    }
+    Ok(gain)
 }
