@@ -4,13 +4,17 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test lint types rust-test python-test shared-test bench clean toolchain install
+.PHONY: demo test lint types rust-test python-test shared-test bench clean toolchain install studies
 
 demo: EXTRAS := demo
 demo: install
 	$(BIN)/contactsense demo
 
 test: lint types rust-test python-test
+
+# What `contactsense study` runs; tests and benches have its dependencies in their extras.
+studies: install
+	$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps -e studies
 
 lint: install
 	$(BIN)/ruff check .
@@ -19,7 +23,7 @@ lint: install
 	cargo clippy --workspace --all-targets --release -- -D warnings
 	cargo clippy -p contactsense --no-default-features --all-targets --release -- -D warnings
 
-types: install
+types: studies
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest contactsense._core
 
@@ -30,11 +34,11 @@ rust-test: toolchain
 	cargo test -p contactsense --quiet --features serde --test suite plain_data
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --release --quiet
 
-python-test: install
+python-test: studies
 	$(BIN)/python -m pytest -q --durations=25
 
 # Tests of robots and logs that are not part of the project, in CONTACTSENSE_SHARED or ../shared.
-shared-test: install
+shared-test: studies
 	$(BIN)/python -m pytest -q --durations=10 -m shared
 
 bench: EXTRAS := bench

@@ -15,9 +15,13 @@ from robots import BY_NAME as ROBOTS
 import contactsense as cs
 from contactsense.cli.app import run as command
 from contactsense.sim import ContactRun
-from contactsense.studies.bimbo2019 import Options, judge, load_arm, record, run, score, track, trial_seed
-from contactsense.studies.bimbo2019.experiments import BY_NAME, CURVATURE, EXPERIMENTS, MODELS, PRINTED
-from contactsense.studies.bimbo2019.study import Study
+from contactsense_studies.bimbo2019.arm import load_arm
+from contactsense_studies.bimbo2019.experiments import BY_NAME, CURVATURE, EXPERIMENTS, MODELS, PRINTED
+from contactsense_studies.bimbo2019.options import Options
+from contactsense_studies.bimbo2019.score import judge, score
+from contactsense_studies.bimbo2019.study import Study, run, trial_seed
+from contactsense_studies.bimbo2019.tracking import track
+from contactsense_studies.bimbo2019.trials import record
 
 LINK = "iiwa_link_5"
 OPTIONS = Options(particles=3000)

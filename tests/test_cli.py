@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib.metadata import requires, version
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,7 @@ import pytest
 from contactsense import __version__
 from contactsense._pictures import picture_file
 from contactsense.cli.app import run
-from contactsense.studies.bimbo2019.study import Trial
+from contactsense_studies.bimbo2019.study import Trial
 
 STUDY = ["study", "franka_touch"]
 
@@ -49,9 +50,10 @@ def test_an_error_is_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     [
         ("typer", ["--help"], "contactsense[cli]"),
         ("rich", ["--help"], "contactsense[cli]"),
-        ("matplotlib", [*STUDY, "--data", ".", "--png", "x.png"], "contactsense[study]"),
-        ("mujoco", ["study", "bimbo2019"], "contactsense[study]"),
-        ("mujoco", ["study", "vorndamme2017"], "contactsense[study]"),
+        ("matplotlib", [*STUDY, "--data", ".", "--png", "x.png"], "contactsense[plot]"),
+        ("mujoco", ["study", "bimbo2019"], "contactsense[sim]"),
+        ("mujoco", ["study", "vorndamme2017"], "contactsense[sim]"),
+        ("mujoco", ["study", "single_contacts"], "contactsense[sim]"),
         ("mujoco", ["demo"], "contactsense[demo]"),
     ],
 )
@@ -63,6 +65,62 @@ def test_a_missing_package_is_named(hidden: str, arguments: list[str], extra: st
     assert ended.returncode == 2
     assert extra in ended.stderr
     assert "Traceback" not in ended.stderr
+
+
+def test_a_study_without_the_studies_says_what_to_install() -> None:
+    hide = (
+        "import importlib.metadata as m; m.entry_points = lambda **_: ();"
+        "from contactsense.cli import main; main()"
+    )
+    for arguments in (["study"], ["study", "bimbo2019", "--trials", "1"], ["study", "--help"]):
+        ended = subprocess.run(
+            [sys.executable, "-c", hide, *arguments], capture_output=True, text=True, timeout=60, check=False
+        )
+        assert ended.returncode == 2
+        missing, remedy = ended.stderr.split("; ")
+        assert missing == "contactsense: contactsense-studies is not installed"
+        assert remedy == "get it with: pip install contactsense-studies\n"
+
+
+def test_the_studies_have_the_version_of_the_package() -> None:
+    assert version("contactsense-studies") == __version__
+    assert f"contactsense[cli,plot,sim]=={__version__}" in (requires("contactsense-studies") or ())
+
+
+LAYERS = {
+    "python/contactsense/demo": ("contactsense_studies",),
+    "studies": ("contactsense.demo",),
+    "python/contactsense/sim": ("contactsense.demo", "contactsense_studies"),
+    "docs": ("contactsense.demo", "contactsense_studies"),
+    "examples": ("contactsense.demo", "contactsense_studies"),
+}
+ABOVE = (
+    "test_cli",
+    "test_demo",
+    "test_bimbo2019",
+    "test_franka_touch",
+    "test_single_contacts",
+    "test_vorndamme2017",
+)
+
+
+def test_what_lies_below_imports_nothing_above() -> None:
+    """Demo and studies know nothing of each other; the library, its tests and its pages know neither."""
+    root = Path(__file__).resolve().parents[1]
+    forbidden = {
+        file: names
+        for folder, names in LAYERS.items()
+        for file in (root / folder).rglob("*")
+        if file.suffix in (".py", ".md")
+    }
+    forbidden |= {
+        file: ("contactsense.demo", "contactsense_studies", "import demo")
+        for file in (root / "tests").glob("*.py")
+        if not file.stem.startswith(ABOVE)
+    }
+    for file, names in forbidden.items():
+        imports = [line for line in file.read_text().splitlines() if "import" in line]
+        assert not [line for line in imports for name in names if name in line], file
 
 
 def test_single_contacts_prints_json(capsys: pytest.CaptureFixture[str]) -> None:
@@ -103,12 +161,12 @@ def _refused_at_once(arguments: list[str], monkeypatch: pytest.MonkeyPatch) -> i
         raise AssertionError("the work began")
 
     for module in (
-        "demo.command",
-        "studies.franka_touch",
-        "studies.vorndamme2017.study",
-        "studies.bimbo2019.study",
+        "contactsense.demo.command",
+        "contactsense_studies.franka_touch",
+        "contactsense_studies.vorndamme2017.study",
+        "contactsense_studies.bimbo2019.study",
     ):
-        monkeypatch.setattr(f"contactsense.{module}.run", work)
+        monkeypatch.setattr(f"{module}.run", work)
     return run(arguments)
 
 
@@ -171,7 +229,7 @@ def test_an_interrupt_is_a_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("contactsense.studies.single_contacts.run", interrupt)
+    monkeypatch.setattr("contactsense_studies.single_contacts.run", interrupt)
     assert run(["study", "single_contacts", "--robot", "iiwa14"]) == 130
     assert capsys.readouterr().err == "contactsense: interrupted\n"
 
@@ -210,8 +268,8 @@ def test_an_interrupted_study_shows_what_it_has(
     def trial(item: tuple[object, str, str, int]) -> Trial:
         return Trial(*item[1:], outcomes=())
 
-    monkeypatch.setattr("contactsense.studies.bimbo2019.study._trial", trial)  # the real ones take seconds
-    monkeypatch.setattr("contactsense.cli.study._progress", progress)
+    monkeypatch.setattr("contactsense_studies.bimbo2019.study._trial", trial)  # the real ones take seconds
+    monkeypatch.setattr("contactsense_studies.harness.progress_bars", progress)
     command = ["study", study, *sizes.split(), "--processes", "1"]
     assert run([*command, "--json"] if figures == "--json" else command) == 130
     told = capsys.readouterr()
@@ -224,16 +282,16 @@ def test_an_interrupted_study_shows_what_it_has(
 
 INTERRUPTED = """
 import os, signal, sys, threading, time
-from contactsense.studies.parallel import collect
+from contactsense_studies.parallel import run_trials
 
-def interrupt(item):
+def interrupt(stage, done, total):
     # The whole group, as a terminal does, or this process alone.
     os.killpg(0, signal.SIGINT) if sys.argv[1] == "group" else os.kill(os.getpid(), signal.SIGINT)
 
 if __name__ == "__main__":
     # A shell's background jobs ignore the signal, and so would this process.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    print(*collect(time.sleep, [0.1, 0.0, 10_000.0, 10_000.0], 2, interrupt), flush=True)
+    print(*run_trials(time.sleep, [0.1, 0.0, 10_000.0, 10_000.0], "asleep", 2, interrupt), flush=True)
 """
 
 

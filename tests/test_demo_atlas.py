@@ -15,9 +15,9 @@ from contactsense import InputError, Robot, demo
 from contactsense.cli.app import run as run_command
 from contactsense.demo.atlas.plan import DURATION_RANGE, END, FORCE_RANGE, PLACES, plan_pushes
 from contactsense.demo.atlas.settings import BEHIND, SENSORS, SensorNoise, choose
-from contactsense.demo.atlas.standing import FEET, posture
 from contactsense.demo.settings import noise_passed
 from contactsense.sim import named_model
+from contactsense.sim.atlas import FEET, posture
 
 NOISE, SENSOR_NOISE = (2.0, 0.1), (1.0, 0.05)
 # Settings were chosen on seeds from 100 on.

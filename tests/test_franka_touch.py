@@ -14,9 +14,9 @@ from robots import SHARED
 import contactsense as cs
 from contactsense._extras import MissingExtraError
 from contactsense.cli.app import run as run_cli
-from contactsense.studies import franka_touch as study
-from contactsense.studies.franka_touch.logs import COLUMNS, log_of_table
-from contactsense.studies.franka_touch.touches import EARLY, judge, link_number
+from contactsense_studies import franka_touch as study
+from contactsense_studies.franka_touch.logs import COLUMNS, log_of_table
+from contactsense_studies.franka_touch.touches import EARLY, judge, link_number
 
 REAL = SHARED / "real" / "franka_touch"
 DT = 0.005

@@ -7,8 +7,7 @@ import pytest
 from robots import BY_NAME
 
 import contactsense as cs
-from contactsense.studies.sampling import lines, random_configuration
-from contactsense.studies.single_contacts import touches
+from contactsense.sim.sampling import lines, random_configuration, touches
 
 SIGMA = 0.1  # of every torque, a third of the threshold [Nm]
 PUSHES = 300

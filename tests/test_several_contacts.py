@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from ranks import rank_deficit
 from robots import parameters, robot_named
 
 import contactsense as cs
-from contactsense.studies.sampling import Touch, random_configuration, touches_in_pose
-from contactsense.studies.vorndamme2017 import rank_deficit
+from contactsense.sim.sampling import Touch, random_configuration, touches_in_pose
 
 CONE = np.deg2rad(40.0)
 LINKS = ("l_hand", "r_hand", "l_foot", "r_foot", "l_clav", "r_clav", "l_uglut", "r_uglut", "utorso")

@@ -3,7 +3,7 @@
 import numpy as np
 
 import contactsense as cs
-from contactsense.studies.single_contacts import touches
+from contactsense.sim.sampling import touches
 
 THRESHOLD = 0.2  # [Nm], three standard deviations of a torque
 

@@ -13,7 +13,6 @@ pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install c
 
 import mujoco
 
-from contactsense.demo.atlas.standing import FEET, controller, posture
 from contactsense.errors import InputError, ModelError
 from contactsense.sim import (
     FLOOR_TYPE,
@@ -27,10 +26,10 @@ from contactsense.sim import (
     named_geoms,
     named_model,
 )
+from contactsense.sim.atlas import FEET, SENSOR_LINKS, controller, posture
 
 # What turns more slowly has turned less than the posture's tolerance of 2 mrad after 10 s [rad/s, m/s].
 STILL = 2e-4
-LINKS = ("l_hand", "r_hand", "l_foot", "r_foot", "l_clav", "r_clav", "l_uglut", "r_uglut", "utorso")
 
 
 @dataclass(frozen=True)
@@ -41,7 +40,7 @@ class Sensor:
     convention: str = "load"
 
 
-SENSORS = tuple(Sensor(link, link) for link in LINKS)
+SENSORS = tuple(Sensor(link, link) for link in SENSOR_LINKS)
 
 
 def _turned() -> np.ndarray:
@@ -102,7 +101,7 @@ def test_readings_are_the_mean_over_the_jump_of_the_torque() -> None:
     measured = robot.step(second)
     data = model.createData()
     a = [pin.aba(model, data, q, v, np.concatenate([np.zeros(6), tau])).copy() for tau in (first, second)]
-    expected = [_load(model, link, q, v, 0.5 * (a[0] + a[1])) for link in LINKS]
+    expected = [_load(model, link, q, v, 0.5 * (a[0] + a[1])) for link in SENSOR_LINKS]
     np.testing.assert_allclose(measured.wrenches, expected, atol=1e-7)
 
 
@@ -121,13 +120,14 @@ def test_it_stands_still_for_ten_seconds() -> None:
     still = np.zeros(model.nv)
     weight = pin.computeTotalMass(model) * 9.81
     external = [
-        measured.wrenches[k] - _load(model, link, robot.q, still, still) for k, link in enumerate(LINKS)
+        measured.wrenches[k] - _load(model, link, robot.q, still, still)
+        for k, link in enumerate(SENSOR_LINKS)
     ]
-    ground = sum(robot.link_pose(foot)[:3, :3] @ external[LINKS.index(foot)][:3] for foot in FEET)
+    ground = sum(robot.link_pose(foot)[:3, :3] @ external[SENSOR_LINKS.index(foot)][:3] for foot in FEET)
     np.testing.assert_allclose(ground, [0.0, 0.0, weight], atol=1e-2)
     for name in ("l_hand", "r_hand", "l_clav", "r_clav", "utorso"):
-        np.testing.assert_allclose(external[LINKS.index(name)], 0.0, atol=1e-3)
-    assert external[LINKS.index("l_uglut")][2] > 0.3 * weight
+        np.testing.assert_allclose(external[SENSOR_LINKS.index(name)], 0.0, atol=1e-3)
+    assert external[SENSOR_LINKS.index("l_uglut")][2] > 0.3 * weight
 
 
 @pytest.mark.parametrize("direction", [(1, 0), (-1, 0), (0, 1), (0, -1)])
@@ -160,7 +160,7 @@ def test_a_push_is_in_the_loads_of_all_sensors_before_it() -> None:
     sample, before, after = states[300], states[299], states[301]
     a = (after.v - before.v) / (2 * robot.dt)
     for name in ("l_clav", "utorso", "r_clav", "l_hand"):
-        wrench = sample.wrenches[LINKS.index(name)] - _load(model, name, sample.q, sample.v, a)
+        wrench = sample.wrenches[SENSOR_LINKS.index(name)] - _load(model, name, sample.q, sample.v, a)
         data = model.createData()
         pin.framesForwardKinematics(model, data, sample.q)
         pose = data.oMf[model.getFrameId(name)]

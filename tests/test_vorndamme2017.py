@@ -12,26 +12,18 @@ import pytest
 
 import contactsense as cs
 from contactsense.cli.app import run as command
-from contactsense.studies.sampling import Touch, blocked
-from contactsense.studies.vorndamme2017 import (
-    SENSOR_LINKS,
-    Scene,
-    external_torque,
-    external_wrenches,
-    fives,
-    judge,
-    pairs,
-    rank_deficit,
-    singles,
-    standing_pose,
-)
-from contactsense.studies.vorndamme2017.hits import ideal_series, scaled
-from contactsense.studies.vorndamme2017.isolation import Setting, Task, make_sensors, run_tasks
-from contactsense.studies.vorndamme2017.judge import Answer, Verdict, assign, judge_answers
-from contactsense.studies.vorndamme2017.physics import simulate
-from contactsense.studies.vorndamme2017.score import by_deficit, score
-from contactsense.studies.vorndamme2017.study import matched_setting
-from contactsense.studies.vorndamme2017.time_series import GAIN, filtered_half_sine, half_sine
+from contactsense.sim.atlas import SENSOR_LINKS
+from contactsense.sim.sampling import Touch, blocked
+from contactsense_studies.vorndamme2017.hits import ideal_series, scaled
+from contactsense_studies.vorndamme2017.information import rank_deficit
+from contactsense_studies.vorndamme2017.instruments import external_torque, external_wrenches
+from contactsense_studies.vorndamme2017.isolation import Setting, Task, make_sensors, run_tasks
+from contactsense_studies.vorndamme2017.judge import Answer, Verdict, assign, judge, judge_answers
+from contactsense_studies.vorndamme2017.physics import simulate
+from contactsense_studies.vorndamme2017.scenes import Scene, fives, pairs, singles, standing_pose
+from contactsense_studies.vorndamme2017.score import by_deficit, score
+from contactsense_studies.vorndamme2017.study import matched_setting
+from contactsense_studies.vorndamme2017.time_series import GAIN, filtered_half_sine, half_sine
 
 EXACT = 1e-9  # [m]
 

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 import contactsense as cs
-from contactsense.studies.vorndamme2017 import fives, pairs, singles
-from contactsense.studies.vorndamme2017.hits import ideal_series, scaled, simulated_series
-from contactsense.studies.vorndamme2017.instruments import SENSOR_LINKS, carries
-from contactsense.studies.vorndamme2017.isolation import Setting, Task, run_tasks
-from contactsense.studies.vorndamme2017.judge import Verdict
-from contactsense.studies.vorndamme2017.scenes import Scene
-from contactsense.studies.vorndamme2017.score import score
-from contactsense.studies.vorndamme2017.study import matched_setting
-from contactsense.studies.vorndamme2017.time_series import Series
+from contactsense.sim.atlas import SENSOR_LINKS
+from contactsense_studies.vorndamme2017.hits import ideal_series, scaled, simulated_series
+from contactsense_studies.vorndamme2017.instruments import carries
+from contactsense_studies.vorndamme2017.isolation import Setting, Task, run_tasks
+from contactsense_studies.vorndamme2017.judge import Verdict
+from contactsense_studies.vorndamme2017.scenes import Scene, fives, pairs, singles
+from contactsense_studies.vorndamme2017.score import score
+from contactsense_studies.vorndamme2017.study import matched_setting
+from contactsense_studies.vorndamme2017.time_series import Series
 
 EXACT = 1e-9  # [m]
 

@@ -11,9 +11,8 @@ import pytest
 pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install contactsense[sim]")
 
 import contactsense as cs
-from contactsense.demo.atlas.settings import SENSORS
-from contactsense.demo.atlas.standing import FEET, controller, posture
 from contactsense.sim import FLOOR_TYPE, Floor, Push, SimulatedRobot, named_geoms, named_model
+from contactsense.sim.atlas import FEET, SENSORS, controller, posture
 
 DT, GAIN = 1e-3, 500.0
 NAMES = [sensor.name for sensor in SENSORS]

@@ -8,10 +8,14 @@ from .errors import ContactSenseError
 
 
 class MissingExtraError(ContactSenseError, ImportError):
-    """A package of an optional part is not installed; the message says how to install the part."""
+    """A package of an optional part is not installed; the message says how to install it.
 
-    def __init__(self, package: str, extra: str) -> None:
-        super().__init__(f"{package} is not installed; get it with: pip install 'contactsense[{extra}]'")
+    `extra` names the part; without one, the package is installed by its own name.
+    """
+
+    def __init__(self, package: str, extra: str | None = None) -> None:
+        wanted = f"'contactsense[{extra}]'" if extra else package
+        super().__init__(f"{package} is not installed; get it with: pip install {wanted}")
 
 
 def require(extra: str, *packages: str) -> None:

@@ -1,20 +1,25 @@
-"""The commands, one module each; every module adds its own by `register(app)`."""
+"""The commands: the package's own, and those that other distributions add.
+
+Each is added by a function `register(app)`; entry points of the group `contactsense.commands` name those of
+other distributions.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import os
 import sys
+from importlib.metadata import entry_points
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
 from .. import ContactSenseError, __version__
+from .._extras import MissingExtraError
 from ..demo import command as demo
-from . import study
 
-COMMANDS = (demo, study)
+STUDIES = "contactsense-studies"  # the distribution that adds `study`
 
 INTERRUPTED = 130  # the exit code that shells give to what Ctrl-C ended
 
@@ -55,8 +60,22 @@ def options(
     """Options of all commands; the text shown is the app's."""
 
 
-for command in COMMANDS:
-    command.register(app)
+def _study() -> None:
+    """Repeat a study. Needs the package contactsense-studies."""
+    raise MissingExtraError(STUDIES)
+
+
+def _add_commands() -> None:
+    demo.register(app)
+    added = {entry.name: entry for entry in entry_points(group="contactsense.commands")}
+    for entry in added.values():
+        entry.load()(app)
+    if "study" not in added:
+        anything = {"allow_extra_args": True, "ignore_unknown_options": True}
+        app.command("study", context_settings=anything, add_help_option=False)(_study)
+
+
+_add_commands()
 
 
 def run(arguments: list[str] | None = None) -> int:

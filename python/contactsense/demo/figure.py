@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from .._pictures import ESTIMATE, GREY, JOINTS, TEXT, TRUTH
 from .figure_parts import (
     FORCE_LEGEND,
     TRUE_LINE,
@@ -21,7 +22,6 @@ from .figure_parts import (
 from .figure_robot import ROBOT_LEGEND, draw_robot
 from .plan import LINKS
 from .result import DemoResult, HitResult, Signals
-from .style import ESTIMATE, GREY, JOINTS, TEXT, TRUTH
 
 # Shown about the start of a hit [ms].
 _WINDOW = (-15.0, 95.0)

@@ -16,10 +16,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from .._pictures import picture_file
+from .._pictures import DETECTED, ESTIMATE, GREY, TEXT, TRUTH, picture_file
 from ..errors import InputError
 from .result import HitResult, Signals
-from .style import DETECTED, ESTIMATE, GREY, TEXT, TRUTH
 
 TRUE_LINE: dict[str, Any] = {"color": TRUTH, "lw": 0.9, "ls": (0, (4, 2))}
 _FORCE_LINE: dict[str, Any] = {"color": ESTIMATE, "lw": 2.6}

@@ -11,10 +11,10 @@ from matplotlib.patches import Patch
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 
 from .. import Robot
-from ..studies.sampling import blocked
+from .._pictures import BODY, ESTIMATE, NAMED, TEXT, TRUTH, WRONG
+from ..sim.sampling import blocked
 from .result import HitResult
 from .settings import FloatArray
-from .style import BODY, ESTIMATE, NAMED, TEXT, TRUTH, WRONG
 
 _ELEVATION = 20.0  # [deg]
 # Points of the link whose sight counts as much as that of the point.

@@ -8,7 +8,7 @@ import pinocchio as pin
 from .. import Robot
 from ..errors import ContactSenseError
 from ..sim import Push, SineTrajectory, random_push
-from ..studies.sampling import blocked
+from ..sim.sampling import blocked
 from .settings import FloatArray
 
 END = 8.0  # [s]

@@ -19,12 +19,12 @@ from ...sim import (
     named_geoms,
     named_model,
 )
+from ...sim.atlas import FEET, controller, posture
 from ..result import DemoResult, HitResult, Progress, Signals, Standing, Timing
 from ..score import HitScorer, strongest
 from ..settings import FloatArray, Noise, Settings
 from .plan import END, plan_pushes
 from .settings import SENSORS, SensorNoise, StandingSettings, choose
-from .standing import FEET, controller, posture
 
 DT = 0.001  # [s]
 # Before the run the robot settles on its soles; the monitor watches the last part, in which it starts up [s].

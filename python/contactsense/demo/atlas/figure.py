@@ -9,10 +9,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..._pictures import ESTIMATE, GREY, JOINTS, TEXT, TRUTH
 from ..figure_parts import FORCE_LEGEND, draw_bands, draw_force, draw_legend, save_styled
 from ..figure_robot import ROBOT_LEGEND, draw_robot
 from ..result import DemoResult, HitResult, Standing
-from ..style import ESTIMATE, GREY, JOINTS, TEXT, TRUTH
 
 # Shown about the start of a push [ms].
 _WINDOW = (-40.0, 360.0)

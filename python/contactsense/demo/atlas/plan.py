@@ -7,7 +7,7 @@ import numpy as np
 from ... import Robot
 from ...errors import ContactSenseError
 from ...sim import Push, random_push
-from ...studies.sampling import blocked
+from ...sim.sampling import blocked
 from ..settings import FloatArray
 
 # Pushed in turn; of each group the seed picks one.

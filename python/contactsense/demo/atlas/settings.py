@@ -8,9 +8,9 @@ import numpy as np
 
 from ... import ForceTorqueSensor, Robot
 from ...errors import InputError
+from ...sim.atlas import FEET
 from ..settings import DEVIATIONS, GAIN, GAIN_WITH_NOISE, FloatArray, Noise, noise_passed
 from .plan import FORCE_RANGE
-from .standing import FEET
 
 # Hands, feet, before the first joints of arms and legs, behind those of the back; named after their links.
 SENSORS = tuple(

@@ -1,0 +1,1 @@
+"""Experiments with contactsense that anyone can repeat: `contactsense study NAME`."""

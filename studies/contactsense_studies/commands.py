@@ -1,0 +1,96 @@
+"""`contactsense study NAME`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from contactsense import Robot
+from contactsense._extras import require
+from contactsense._pictures import picture_file
+from contactsense.robot import DESCRIPTIONS
+
+from .bimbo2019.options import Options as BimboOptions
+from .harness import AsJson, add_study, print_json
+from .vorndamme2017.options import Options as VorndammeOptions
+
+app = typer.Typer(
+    help="Repeat a study: experiments on published logs and on simulated robots.", no_args_is_help=True
+)
+
+
+def register(parent: typer.Typer) -> None:
+    """Adds `study` to the command line."""
+    parent.add_typer(app, name="study")
+
+
+@app.command("franka_touch")
+def franka_touch(
+    data: Annotated[Path, typer.Option(help="Folder of the logs: a4.csv.gz and the like.")],
+    touches: Annotated[bool, typer.Option("--touches", help="List every contact as well.")] = False,
+    as_json: AsJson = False,
+    png: Annotated[Path, typer.Option(help="File to write the picture to.")] = Path("franka_touch.png"),
+    plot_log: Annotated[
+        str | None, typer.Option(help="Log that the picture shows over time (default: first held out).")
+    ] = None,
+    tune: Annotated[
+        bool, typer.Option("--tune", help="Choose the settings anew on the tuning files instead.")
+    ] = False,
+) -> None:
+    """Contacts of a real Franka arm: whether, how soon and on which link they are detected."""
+    require("plot", "matplotlib")
+    from . import franka_touch as study
+    from .franka_touch import plot, report
+
+    picture = picture_file("png", png)
+    result = study.run(data, tune=tune, plot_log=plot_log)
+    plot.save_plot(result, picture, plot_log)
+    if as_json:
+        print_json(report.as_data(result))
+    else:
+        report.print_study(result, Console(), touches=touches)
+        print(f"Picture: {picture}")
+
+
+@app.command("single_contacts")
+def single_contacts(
+    robot: Annotated[str, typer.Option(help="A packaged robot, or a URDF file.")] = "atlas",
+    package_dir: Annotated[
+        list[Path] | None, typer.Option(help="Folder for `package://` names; may be repeated.")
+    ] = None,
+    floating_base: Annotated[
+        bool, typer.Option("--floating-base", help="The base of the URDF file moves freely.")
+    ] = False,
+    points: Annotated[int, typer.Option(help="Number of contacts per link.")] = 100,
+    seed: Annotated[int, typer.Option(help="Seed of poses, points and forces.")] = 0,
+    as_json: AsJson = False,
+) -> None:
+    """Single contacts with ideal measurements: which are located, how accurately, and why others are not."""
+    from . import single_contacts as study
+
+    if robot in DESCRIPTIONS:
+        subject = Robot.named(robot)
+    else:
+        subject = Robot.from_urdf(robot, package_dirs=package_dir or (), floating_base=floating_base)
+    results = study.run(subject, points, seed)
+    if as_json:
+        print_json(study.as_data(results))
+    else:
+        Console().print(study.table(results))
+
+
+add_study(
+    app,
+    "vorndamme2017",
+    "One, two and five simultaneous contacts on Atlas, with joint torques and with force/torque sensors.",
+    VorndammeOptions,
+)
+add_study(
+    app,
+    "bimbo2019",
+    "Contacts on a moving arm, located by a particle filter with three motion models.",
+    BimboOptions,
+)

@@ -1,0 +1,39 @@
+"""Robots of the package example-robot-data, as the studies use them."""
+
+from __future__ import annotations
+
+from importlib.metadata import PackageNotFoundError, distribution
+from pathlib import Path
+
+from contactsense import Robot
+from contactsense._extras import MissingExtraError
+
+PACKAGE = "example-robot-data"
+PANDA = "example-robot-data/robots/panda_description/urdf/panda.urdf"
+
+
+def share_folder() -> Path:
+    """The folder that `package://` names of example-robot-data refer to.
+
+    Raises:
+        MissingExtraError: the package is not installed.
+    """
+    try:
+        files = distribution(PACKAGE).files or []
+    except PackageNotFoundError as cause:
+        raise MissingExtraError(PACKAGE) from cause
+    for file in files:
+        if file.as_posix().endswith(PANDA):
+            return Path(str(file.locate())).resolve().parents[len(Path(PANDA).parts) - 1]
+    raise MissingExtraError(PACKAGE)
+
+
+def panda() -> Robot:
+    """Franka's arm with its hand, the fingers closed: `q` is the seven joints of the arm.
+
+    Raises:
+        MissingExtraError: example-robot-data is not installed.
+    """
+    share = share_folder()
+    fingers = ("panda_finger_joint1", "panda_finger_joint2")
+    return Robot.from_urdf(share / PANDA, package_dirs=share, locked_joints=fingers)

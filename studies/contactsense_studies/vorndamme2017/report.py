@@ -1,0 +1,194 @@
+"""The study as tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from ..harness import print_tables, scaled, sheet
+from .data import series_figures
+from .instruments import METHODS, Method
+from .isolation import THRESHOLD
+from .score import Score, by_deficit, score
+from .study import Run, Study
+from .timing import GOALS, PAPER
+
+NAMES: dict[Method, str] = {
+    "torques": "torques",
+    "distal": "+ 4",
+    "both": "+ 9",
+    "sensors": "9 alone",
+}
+BASELINE = "paper*"
+SCORES = ("n", "exact", "1 cm", "25 cm", "candi-\ndate", "links", "claim", "false", "off\nm")
+SERIES = ("hits", "loca-\nted", "delay\nms", "at peak\nms", "right by\n2nd", "right\nsamples", "worst\nm")
+SERIES_NOTE = (
+    "(6), (10): torques and acceleration as late as these say; (6): the acceleration\n"
+    "without delay; right: within 1 um. Simulated: a floating robot in motion,\n"
+    "through ContactMonitor; right: within 1 cm."
+)
+TIMES = ("calls", "mean", "max", "plain\nmax", "goal:\nmean", "max", "paper:\nmean", "max")
+TIMES_NOTE = "max: over scenes, of the fastest of three calls; plain max: of all\ncalls but the first"
+SUMMARY = ("deter-\nmined", "detected", "links\nnamed", "isolated\n1 cm", "identified\n1 %", "false\nclaims")
+NOTES = (
+    "Torques: of the joints; + 4: and sensors of hands and feet; + 9: and all sensors.",
+    "n: scenes; shares in %. Exact (1 nm), 1 cm, 25 cm: every contact has an estimate",
+    "that near of its own: the point, or the first candidate where that is open.",
+    "Candidate: every contact has a candidate within 1 cm. Links: just those touched",
+    "are named. Claim: all are said to be located; false: some claim is more than 1 cm",
+    "from every contact; off: the worst. Rank deficit: of the true contacts, by NumPy.",
+    "Limit 3 sd: thresholds of three standard deviations of the noise at usual torques.",
+    "* The paper's steps (28), (26), 4 in NumPy, told the links touched.",
+)
+
+
+def print_study(study: Study, console: Console) -> None:
+    """All tables, and how to read them."""
+    tables = [
+        _scores("One contact", _by_method(study, "singles")),
+        _scores("Two contacts, every pair of links", _by_rank(study, "pairs")),
+        _scores("Two contacts, uniform by area", _by_rank(study, "pairs by area")),
+        _scores("Five contacts: hands, feet, and torso or first shoulder link", _by_rank(study, "fives")),
+        _scores(f"With {study.options.noise:.3g} relative noise, determined scenes", _noisy(study)),
+        series_table(study),
+        timing_table(study),
+        summary_table(study),
+    ]
+    print_tables(console, tables, NOTES)
+
+
+Row = tuple[tuple[str, str], Score]
+
+
+def _by_method(study: Study, name: str) -> Iterable[Row]:
+    for run in _runs(study, name):
+        determined = [verdict for verdict in run.verdicts if verdict.rank_deficit == 0]
+        unseen = [verdict for verdict in run.verdicts if verdict.rank_deficit > 0]
+        yield (_label(run), "yes"), score(determined)
+        if unseen:
+            yield ("", "no"), score(unseen)
+
+
+def _by_rank(study: Study, name: str) -> Iterable[Row]:
+    for run in _runs(study, name):
+        label = _label(run)
+        groups = by_deficit(run.verdicts)
+        for deficit, verdicts in groups.items():
+            yield (label, f"{deficit}"), score(verdicts)
+            label = ""
+        if len(groups) > 1:
+            yield ("", "over 0"), score([each for each in run.verdicts if each.rank_deficit])
+            yield ("", "all"), score(run.verdicts)
+
+
+def _noisy(study: Study) -> Iterable[Row]:
+    for run in study.runs:
+        if run.setting.noise:
+            determined = [verdict for verdict in run.verdicts if verdict.rank_deficit == 0]
+            matched = isinstance(run.setting.torque_threshold, tuple)
+            label = "" if matched else f"{len(run.scenes[0].touches)}, {NAMES[run.setting.method]}"
+            yield (label, "3 sd" if matched else f"{THRESHOLD:g}"), score(determined)
+
+
+def _runs(study: Study, name: str) -> list[Run]:
+    return [run for run in study.runs if run.name == name and not run.setting.noise]
+
+
+def _label(run: Run) -> str:
+    return BASELINE if run.setting.solver == "pseudoinverse" else NAMES[run.setting.method]
+
+
+def _scores(title: str, rows: Iterable[Row]) -> Table:
+    second = {"One": "deter-\nmined", "Wit": "limit"}.get(title[:3], "rank\ndeficit")
+    table = sheet(title, ("", second), SCORES)
+    for number, (labels, figures) in enumerate(rows):
+        if labels[0] and number:
+            table.add_section()
+        table.add_row(*labels, *_cells(figures))
+    return table
+
+
+def _cells(figures: Score) -> list[str]:
+    return [
+        str(figures.scenes),
+        *(
+            percent(value)
+            for value in (
+                figures.exact,
+                figures.near,
+                figures.fair,
+                figures.among_candidates,
+                figures.links_right,
+                figures.located,
+                figures.wrong,
+            )
+        ),
+        f"{figures.claim_error:.0e}" if figures.located or figures.wrong else "-",
+    ]
+
+
+def series_table(study: Study) -> Table:
+    """Hits over time."""
+    table = sheet("A hit of 20 ms, observer gain 500/s, 1 kHz", ("hit", ""), SERIES, SERIES_NOTE)
+    for hits in study.hits:
+        kind = {"late": "(6), (10)", "prompt": "(6)", "simulated": "simulated"}[hits.kind]
+        for number, method in enumerate(hits.series[0].signals):
+            figures = series_figures(hits.series, method)
+            table.add_row(
+                "" if number else f"{kind}, {hits.amplitude:g} N",
+                NAMES[method],
+                f"{figures['hits']:.0f}",
+                f"{figures['located']:.0f}",
+                scaled(figures["delay"], 1e3, 1),
+                scaled(figures["peak_delay"], 1e3, 1),
+                percent(figures["right_from_second"]),
+                percent(figures["right_share"]),
+                f"{figures['point_error_max']:.0e}",
+            )
+    return table
+
+
+def timing_table(study: Study) -> Table:
+    """Time of a call."""
+    table = sheet("Time of a call from Python, us", ("contacts", ""), TIMES, TIMES_NOTE)
+    for timing in study.timings:
+        key, none = (timing.contacts, timing.method), (np.nan, np.nan)
+        others = (*GOALS.get(key, none), *PAPER.get(key, none))
+        table.add_row(
+            str(timing.contacts),
+            NAMES[timing.method],
+            str(timing.scenes),
+            *(f"{1e6 * value:.1f}" for value in (timing.mean, timing.max, timing.plain_max)),
+            *("" if np.isnan(value) else f"{1e6 * value:,.0f}" for value in others),
+        )
+    return table
+
+
+def summary_table(study: Study) -> Table:
+    """What can be told with which sensors, after Table II."""
+    table = sheet("What each set of sensors determines, ideal measurements, %", ("", ""), SUMMARY)
+    for method in METHODS:
+        label = NAMES[method]
+        for name in ("singles", "pairs", "fives"):
+            try:
+                figures = score(study.run(name, method).verdicts)
+            except KeyError:
+                continue
+            determined = np.mean([each.rank_deficit == 0 for each in study.run(name, method).verdicts])
+            shares = (figures.detected, figures.links_right, figures.near, figures.identified, figures.wrong)
+            table.add_row(label, name, percent(float(determined)), *map(percent, shares))
+            label = ""
+        table.add_section()
+    return table
+
+
+def percent(share: float) -> str:
+    """In %, rounded so that only all is 100 and only none is 0."""
+    if np.isnan(share):
+        return "-"
+    if share in (0.0, 1.0):
+        return f"{100 * share:.0f}"
+    return f"{min(max(100 * share, 0.01), 99.99):.{1 if 0.001 <= share <= 0.999 else 2}f}"
