@@ -26,6 +26,7 @@ lint: install
 types: studies
 	$(BIN)/mypy
 	$(BIN)/python -m mypy.stubtest contactsense._core
+	$(BIN)/python tools/stub_docs.py --check
 
 # The same random cases in every run; another seed draws others.
 rust-test: export PROPTEST_RNG_SEED ?= 1

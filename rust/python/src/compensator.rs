@@ -15,8 +15,22 @@ use crate::sensor::sensors;
 
 /// Frees the readings of force/torque sensors of the weight and inertia behind them (Vorndamme 2017, eqs. 13-19).
 ///
-/// One pass for all sensors, also for several in a chain and at fixed joints. `sensors`: of `ForceTorqueSensor`, names and
-/// links unique. Raises `InputError` that names what is wrong.
+/// One pass serves all sensors, also several in a chain and those at fixed joints.
+///
+/// Args:
+///     robot: the robot that carries the sensors.
+///     sensors: the sensors, in the order of the readings; names and links are unique.
+///
+/// Raises:
+///     InputError: a sensor cannot be used; names it.
+///
+/// Example:
+///     >>> import contactsense as cs
+///     >>> robot = cs.Robot.named("iiwa14")
+///     >>> compensator = cs.LoadCompensator(robot, [cs.ForceTorqueSensor("wrist", "iiwa_link_7")])
+///     >>> q, v = robot.neutral(), robot.velocity({})
+///     >>> compensator.update(q, v, v, [[0.0, 0.0, -3.0, 0.0, 0.0, 0.0]]).shape
+///     (1, 6)
 #[pyclass(frozen, name = "LoadCompensator", module = "contactsense")]
 pub struct PyLoadCompensator {
     compensator: Mutex<LoadCompensator>,
@@ -41,10 +55,20 @@ impl PyLoadCompensator {
         &self.shown
     }
 
-    /// The external wrench that each sensor sees, `(n_sensors, 6)` [N, Nm]: on the robot, world axes, at the sensor's origin.
+    /// The external wrench that each sensor measures.
     ///
-    /// `q` `(nq,)`, `v` and `a` `(nv,)`, `wrenches` `(n_sensors, 6)`: the readings, sensor axes. A reading with a NaN
-    /// leaves its sensor out: its row is NaN, the others hold. Raises `InputError` that names the argument.
+    /// Args:
+    ///     q: configuration, `(nq,)`.
+    ///     v: velocity, `(nv,)` [rad/s, m/s].
+    ///     a: acceleration, `(nv,)` [rad/s^2, m/s^2].
+    ///     wrenches: the readings, `(n_sensors, 6)`, sensor axes [N, Nm]. A NaN in a reading leaves its sensor out.
+    ///
+    /// Returns:
+    ///     `(n_sensors, 6)` [N, Nm]: force and moment on the robot at the sensor's origin, world axes; NaN for a sensor that
+    ///     is left out.
+    ///
+    /// Raises:
+    ///     InputError: an argument cannot be used; names it.
     fn update<'py>(
         &self,
         q: &Bound<'py, PyAny>,

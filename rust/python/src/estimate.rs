@@ -29,7 +29,7 @@ impl PyMode {
         self.names.link(self.mode.link)
     }
 
-    /// `(3,)`, on the link's surface, world frame [m].
+    /// The place on the link's surface, `(3,)`, world frame [m].
     #[getter]
     fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         result(py, self.mode.point.as_slice())
@@ -75,7 +75,7 @@ impl PyMode {
     }
 }
 
-/// The contact as a filter sees it.
+/// The contact as a filter estimates it.
 #[pyclass(frozen, name = "ContactEstimate", module = "contactsense")]
 pub struct PyContactEstimate {
     names: Arc<Names>,
@@ -139,7 +139,9 @@ impl PyContactEstimate {
         self.contact_mode().is_some()
     }
 
-    /// "none", "started", "continued", "lost", "changed" (the contact is elsewhere than it was held to be) or
+    /// What happened with this update.
+    ///
+    /// "none", "started", "continued", "lost", "changed" (the contact is elsewhere than it was estimated before) or
     /// "jumped" (the pose did, so the search began anew).
     #[getter]
     fn event(&self) -> &str {
@@ -170,19 +172,20 @@ impl PyContactEstimate {
         self.vector(py, |mode| mode.normal)
     }
 
-    /// Of the force [N].
+    /// Magnitude of the force [N]; NaN without contact.
     #[getter]
     fn magnitude(&self) -> f64 {
         self.contact_mode().map_or(f64::NAN, |mode| mode.force.norm())
     }
 
-    /// Of the contact [N/m]; `None` without contact, and where the motion model has none.
+    /// Stiffness of the contact [N/m]; `None` without contact, and where the motion model has none.
     #[getter]
     fn stiffness(&self) -> Option<f64> {
         self.contact_mode()?.stiffness
     }
 
-    /// Of the point, `(3, 3)`, world frame [m^2]: second moment of all particles about `point`, other modes included.
+    /// Covariance of the point, `(3, 3)`, world frame [m^2]: second moment of all particles about `point`, other modes
+    /// included.
     #[getter]
     fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let c = self.found.estimate.covariance.unwrap_or(Matrix3::repeat(f64::NAN));
@@ -206,15 +209,19 @@ impl PyContactEstimate {
         once(py, &self.wrapped, || self.found.estimate.modes.iter().map(wrap).collect())
     }
 
-    /// The data do not say which link, or where on it, or motion has not confirmed yet that it is a single push: one obstacle
-    /// that stays explains the torques at the last poses, touches the link near `point`, and its force follows the motion.
+    /// Whether the contact is not determined.
+    ///
+    /// The data do not determine which link, or where on it, or motion has not confirmed yet that it is a single push: that
+    /// one obstacle that stays explains the torques at the last poses, is in contact with the link near `point`, and its
+    /// force follows the motion.
     #[getter]
     fn ambiguous(&self) -> bool {
         self.found.estimate.ambiguous
     }
 
-    /// Whether a push by one obstacle that stays explains the torques at the last poses, 24 at most and each 5 mm from the one
-    /// before: what is left over is within three times the stated noise (a chi-square test at 99 %), and the force follows the
+    /// Whether a push by one obstacle that stays explains the torques at the last poses.
+    ///
+    /// These are 24 at most, each 5 mm from the one before. What is left over is within three times the stated noise (a chi-square test at 99 %), and the force follows the
     /// motion no less than on the softest obstacle of `stiffness_range` (another one at 99 %). Where not, the estimate is
     /// ambiguous, too: two contacts, a moment, a payload, a pull, or biased torques.
     #[getter]
@@ -222,20 +229,21 @@ impl PyContactEstimate {
         self.found.explained
     }
 
-    /// Root mean square, over all joints, of the torque that the best push leaves over at this update, in standard
-    /// deviations of the stated noise (`torque_noise` and `relative_noise`).
+    /// Torque that the best push does not explain at this update, in standard deviations of the stated noise.
+    ///
+    /// It is the root mean square over all joints; the noise is `torque_noise` and `relative_noise`.
     #[getter]
     fn residual(&self) -> f64 {
         self.found.residual
     }
 
-    /// Effective number of particles, before resampling.
+    /// Effective number of particles before resampling.
     #[getter]
     fn effective_samples(&self) -> f64 {
         self.found.effective_samples
     }
 
-    /// As given to `update`; otherwise the number of updates since the start.
+    /// Time as given to `update` [s]; otherwise the number of updates since the start.
     #[getter]
     fn time(&self) -> f64 {
         self.time

@@ -23,7 +23,7 @@ use crate::returned::{result, vector};
 use crate::robot::PyRobot;
 use crate::sensor::{sensor_names, sensors, wrench_thresholds};
 
-/// A place where the line of action meets a surface.
+/// A place where the line of action of a force meets a surface.
 #[pyclass(frozen, name = "Candidate", module = "contactsense")]
 pub struct PyCandidate {
     names: Arc<Names>,
@@ -38,7 +38,7 @@ impl PyCandidate {
         self.names.link(self.candidate.link)
     }
 
-    /// `(3,)`, world frame [m].
+    /// The place, `(3,)`, world frame [m].
     #[getter]
     fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         result(py, self.candidate.point.as_slice())
@@ -71,7 +71,9 @@ impl PyCandidate {
     }
 }
 
-/// One contact; vectors that the data do not determine are NaN.
+/// One contact.
+///
+/// Vectors that the data do not determine are NaN.
 #[pyclass(frozen, name = "Contact", module = "contactsense")]
 pub struct PyContact {
     names: Arc<Names>,
@@ -88,13 +90,13 @@ impl PyContact {
         self.names.link(self.contact.link)
     }
 
-    /// `(3,)`, world frame [m].
+    /// The contact point, `(3,)`, world frame [m].
     #[getter]
     fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         vector(py, self.contact.place.map(|place| place.point))
     }
 
-    /// `(3,)`, link frame [m].
+    /// The contact point, `(3,)`, link frame [m].
     #[getter]
     fn point_local<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         vector(py, self.contact.place.map(|place| place.point_local))
@@ -118,14 +120,15 @@ impl PyContact {
         vector(py, self.contact.wrench)
     }
 
-    /// What saw it: "joint torques", or the sensor's name.
+    /// What detected it: "joint torques", or the sensor's name.
     #[getter]
     fn source(&self) -> &str {
         self.contact.source.map_or(JOINT_TORQUES, |sensor| &self.names.sensors[sensor.get()])
     }
 
-    /// Whether 90 % of the places that explain the torques lie within `locate_within` of the point. If not, the link may
-    /// be known, the point is not.
+    /// Whether 90 % of the places that explain the torques lie within `locate_within` of the point.
+    ///
+    /// If not, the link may be known, but the point is not.
     #[getter]
     fn located(&self) -> bool {
         self.contact.located
@@ -141,15 +144,19 @@ impl PyContact {
         self.contact.place.map_or(f64::NAN, |place| place.std)
     }
 
-    /// Whether redundant torques agree with the contacts reported. False where they do not, and where there are as many
-    /// unknowns as torques: nothing then checks the assumption that each contact is one force without moment.
+    /// Whether redundant torques agree with the contacts reported.
+    ///
+    /// False where they do not, and where there are as many unknowns as torques: nothing then checks the assumption that
+    /// each contact is one force without moment.
     #[getter]
     fn verified(&self) -> bool {
         self.contact.verified
     }
 
-    /// Where it may be, best first: every surface hit of the line of action, points on other links that explain the
-    /// torques about as well, or the points of several solutions.
+    /// Places where the contact may be, best first.
+    ///
+    /// They are all places where the line of action meets a surface, points on other links that explain the torques about
+    /// as well, or the points of several solutions.
     #[getter]
     fn candidates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         once(py, &self.wrapped, || {
@@ -272,13 +279,13 @@ impl PyIsolation {
         contacts(py, &self.names, &self.isolation, &self.wrapped)
     }
 
-    /// Components of the contacts' wrenches that the torques leave open (Vorndamme 2017, eq. 31).
+    /// Number of components of the contacts' wrenches that the torques do not determine (Vorndamme 2017, eq. 31).
     #[getter]
     fn rank_deficit(&self) -> usize {
         self.isolation.rank_deficit
     }
 
-    /// Norm of the external torque that the contacts do not explain.
+    /// Norm of the external torque that the contacts do not explain [Nm, N].
     #[getter]
     fn residual(&self) -> f64 {
         self.isolation.residual
@@ -290,7 +297,9 @@ impl PyIsolation {
         link_names(py, &self.names, &self.isolation.link_candidates)
     }
 
-    /// Whether there were more contacts than `max_contacts`, more hits of a line than are kept (the nearest are), or more
+    /// Whether the answer is cut short.
+    ///
+    /// There were more contacts than `max_contacts`, more hits of a line than are kept (the nearest are), or more
     /// explanations to try than the bounded work of a call allows.
     #[getter]
     fn truncated(&self) -> bool {
@@ -322,19 +331,34 @@ pub fn contact_count(object: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
     Ok(count as usize)
 }
 
-/// Finds the contacts that explain an external torque and the wrenches that sensors see: links, points and forces.
+/// Finds the contacts that explain an external torque and the wrenches of sensors: links, points and forces.
 ///
-/// One contact by Vorndamme 2017, eqs. 22-26; several with sensors by eq. 27, without by eqs. 28-31. Where torques
-/// leave parts of two wrenches open, it is used that a contact's force has no moment, acts on the surface and pushes;
-/// several solutions are candidates.
+/// One contact is isolated by Vorndamme 2017, eqs. 22-26; several with sensors by eq. 27, without by eqs. 28-31. Where
+/// torques do not determine two wrenches, it is used that the force of a contact has no moment, acts on the surface and
+/// pushes; several solutions are candidates.
 ///
-/// `sensors`: of `ForceTorqueSensor`, in the order of the wrenches. `torque_threshold`: scalar or `(nv,)` [Nm, N], default
-/// 1e-3; a joint feels a contact above it, and a third of it is the scale of the torques' errors. `noise`: a `NoiseModel` in
-/// place of that scale; then the default of `torque_threshold` is three standard deviations of the torques at rest. `wrench_threshold`: the
-/// same for wrenches, scalar, `(6,)` or `(n_sensors, 6)` [N, Nm], default 1e-3. `wanted_contacts`: names of sensors whose
-/// contacts are meant and not reported (eq. 20). `max_contacts`: reported at most. `pushing`: forces push on the surface
-/// (if False the point cannot be determined: `located` is False). `locate_within` [m], default 0.05: a contact is located
-/// if 90 % of the places that explain the torques are within this distance of its point. Raises `InputError` that names the argument.
+/// Args:
+///     robot: the robot.
+///     sensors: `ForceTorqueSensor`s, in the order of the wrenches.
+///     torque_threshold: scalar or `(nv,)` [Nm, N]. A joint takes part in a contact above it, and a third of it is the
+///         standard deviation of the torques' errors. With `noise` the default is three standard deviations at rest.
+///     wrench_threshold: the same for wrenches: scalar, `(6,)` or `(n_sensors, 6)` [N, Nm].
+///     wanted_contacts: names of sensors whose contacts are meant and not reported (Vorndamme 2017, eq. 20).
+///     max_contacts: number of contacts that are reported at most.
+///     pushing: whether forces push on the surface. If not, the point cannot be determined, and `located` is False.
+///     noise: a `NoiseModel` of the external torque, in place of the third of a threshold.
+///     locate_within: a contact is located if 90 % of the places that explain the torques are within this distance of its
+///         point [m].
+///
+/// Raises:
+///     InputError: an argument cannot be used; names it.
+///
+/// Example:
+///     >>> import contactsense as cs
+///     >>> robot = cs.Robot.named("iiwa14")
+///     >>> isolator = cs.ContactIsolator(robot)
+///     >>> isolator.isolate(robot.neutral(), robot.torque({})).contacts
+///     ()
 #[pyclass(frozen, name = "ContactIsolator", module = "contactsense")]
 pub struct PyContactIsolator {
     robot: Py<PyRobot>,
@@ -351,7 +375,9 @@ struct State {
 impl PyContactIsolator {
     #[new]
     #[pyo3(signature = (robot, *, sensors=None, torque_threshold=None, wrench_threshold=None, wanted_contacts=None,
-                        max_contacts=None, pushing=true, noise=None, locate_within=None))]
+                        max_contacts=None, pushing=true, noise=None, locate_within=None),
+           text_signature = "(robot, *, sensors=(), torque_threshold=1e-3, wrench_threshold=1e-3, wanted_contacts=(), \
+            max_contacts=5, pushing=True, noise=None, locate_within=0.05)")]
     #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
         #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
@@ -403,11 +429,19 @@ impl PyContactIsolator {
         format!("ContactIsolator('{name}', {sensors} sensors)")
     }
 
-    /// Contacts that explain the external torque `tau_ext` `(nv,)` at the configuration `q` `(nq,)`.
+    /// The contacts that explain an external torque.
     ///
-    /// `wrenches` `(n_sensors, 6)`: the external wrench that each sensor sees, as `LoadCompensator` gives it: (force,
-    /// moment) at the sensor's origin, world axes [N, Nm]; a NaN in one leaves its sensor out. Raises `InputError` that
-    /// names the argument.
+    /// Args:
+    ///     q: configuration, `(nq,)`.
+    ///     tau_ext: external torque, `(nv,)` [Nm, N].
+    ///     wrenches: the external wrench that each sensor measures, `(n_sensors, 6)` [N, Nm], as `LoadCompensator` gives it: force
+    ///         and moment at the sensor's origin, world axes. A NaN in a row leaves its sensor out.
+    ///
+    /// Returns:
+    ///     An `Isolation`.
+    ///
+    /// Raises:
+    ///     InputError: an argument cannot be used; names it.
     #[pyo3(signature = (q, tau_ext, wrenches=None))]
     fn isolate(
         &self,

@@ -26,11 +26,11 @@ mod urdf;
 
 /// An object of a class that was pickled, from its state.
 #[pyfunction]
-fn _restore<'py>(py: Python<'py>, class: &str, state: &[u8]) -> PyResult<Bound<'py, PyAny>> {
-    match class {
-        "Candidate" | "Contact" | "Isolation" => isolator::restore(py, class, state),
+fn _restore<'py>(py: Python<'py>, class_: &str, state: &[u8]) -> PyResult<Bound<'py, PyAny>> {
+    match class_ {
+        "Candidate" | "Contact" | "Isolation" => isolator::restore(py, class_, state),
         "ContactReport" => monitor::restore(py, state),
-        "Mode" | "ContactEstimate" => estimate::restore(py, class, state),
+        "Mode" | "ContactEstimate" => estimate::restore(py, class_, state),
         "NoiseModel" => Ok(Bound::new(py, noise::PyNoiseModel(plain::restored(state)?))?.into_any()),
         "ForceTorqueSensor" => {
             Ok(Bound::new(py, sensor::PyForceTorqueSensor(plain::restored(state)?))?.into_any())

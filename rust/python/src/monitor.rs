@@ -20,7 +20,7 @@ use crate::returned::{from_rows, read_only, result, wrench_rows};
 use crate::robot::PyRobot;
 use crate::sensor::{sensor_names, sensors, wrench_thresholds};
 
-/// What the monitor says of one tick.
+/// What the monitor reports of one tick.
 #[pyclass(frozen, name = "ContactReport", module = "contactsense")]
 pub struct PyContactReport {
     names: Arc<Names>,
@@ -55,7 +55,7 @@ pub fn restore<'py>(py: Python<'py>, state: &[u8]) -> PyResult<Bound<'py, PyAny>
 
 #[pymethods]
 impl PyContactReport {
-    /// Since the first accepted call [s].
+    /// Time since the first accepted call [s].
     #[getter]
     fn time(&self) -> f64 {
         self.report.time
@@ -73,21 +73,24 @@ impl PyContactReport {
         self.report.onset
     }
 
-    /// Whether a torque that stood still became the bias in this tick, which ended the contact: what `hysteresis` may have
-    /// left, what outlasted `bias_settle_time`, or no torque at all where the bias before was wrong.
+    /// Whether a torque that stood still became the bias in this tick, which ended the contact.
+    ///
+    /// It is what `hysteresis` may have left, what outlasted `bias_settle_time`, or no torque at all where the bias before
+    /// was wrong.
     #[getter]
     fn remainder_learned(&self) -> bool {
         self.report.remainder_learned
     }
 
-    /// Links that detection alone names: on every branch those between the last joint or sensor over its threshold and
-    /// the next.
+    /// Names of the links that detection alone leaves for a contact (Vorndamme 2017, eq. 21).
+    ///
+    /// On every branch they are those between the last joint or sensor over its threshold and the next.
     #[getter]
     fn links<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         link_names(py, &self.names, &self.report.links)
     }
 
-    /// Of all contacts, `(nv,)` [Nm, N], free of the tracked bias.
+    /// The external torque of all contacts, `(nv,)` [Nm, N], free of the tracked bias.
     #[getter]
     fn external_torque<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         result(py, &self.report.external_torque)
@@ -99,8 +102,9 @@ impl PyContactReport {
         result(py, &self.report.collision_torque)
     }
 
-    /// The external wrench that each sensor sees, `(n_sensors, 6)` [N, Nm]: on the robot, world axes, at the sensor's
-    /// origin; NaN where a sensor is left out.
+    /// The external wrench that each sensor measures, `(n_sensors, 6)` [N, Nm].
+    ///
+    /// Force and moment on the robot at the sensor's origin, world axes; NaN where a sensor is left out.
     #[getter]
     fn wrenches<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         wrench_rows(py, &self.report.wrenches)
@@ -112,14 +116,16 @@ impl PyContactReport {
         PyTuple::new(py, self.report.sensors_left_out.iter().map(|sensor| &self.names.sensors[sensor.get()]))
     }
 
-    /// Names of the joints whose torques say nothing of a collision, since a wanted contact loads them unmeasured: those
-    /// behind its sensor, and while that gives no reading (and a little after) those between it and the base.
+    /// Names of the joints whose torques are not used to detect a collision, since a wanted contact loads them unmeasured.
+    ///
+    /// They are those behind its sensor, and while that gives no reading (and a little after) those between it and the
+    /// base.
     #[getter]
     fn joints_left_out<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.report.joints_left_out.iter().map(|joint| &self.names.joints[*joint]))
     }
 
-    /// Estimated acceleration, `(nv,)`.
+    /// Estimated acceleration, `(nv,)` [rad/s^2, m/s^2].
     #[getter]
     fn acceleration<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         result(py, &self.acceleration)
@@ -131,7 +137,9 @@ impl PyContactReport {
         contacts(py, &self.names, &self.report.isolation, &self.wrapped)
     }
 
-    /// Whether there were more contacts than `max_contacts`, more hits of a line than are kept (the nearest are), or more
+    /// Whether the answer is cut short.
+    ///
+    /// There were more contacts than `max_contacts`, more hits of a line than are kept (the nearest are), or more
     /// explanations to try than the bounded work of a call allows.
     #[getter]
     fn truncated(&self) -> bool {
@@ -157,20 +165,42 @@ impl PyContactReport {
     }
 }
 
-/// The sense of touch of one robot, called once a control tick: observer, compensation, bias, detection, isolation.
+/// Detects, locates and measures the contacts of one robot, called once a control tick.
 ///
-/// `dt`: time between two calls [s]. `sensors`: of `ForceTorqueSensor`, in the order of the readings; `wanted_contacts`:
-/// names of those whose contacts are meant (feet, hands): what touches behind them is no collision. `wrench_threshold`, on
-/// external wrenches: a scalar, `(6,)`, or `(n_sensors, 6)` [N, Nm], default 2. `wrench_gain` [1/s]: of the low-pass on
-/// external wrenches (readings and velocities are noisy), default the smallest of
-/// `observer_gain`, and none where that is at least `0.5 / dt`; infinite for none. `observer_gain`: scalar or `(nv,)` [1/s], default 50. `torque_threshold`: scalar
-/// or `(nv,)` [Nm, N], default 0.5. `bias_time_constant` [s]: tracks the torque that errors of the model cause while
-/// nothing touches; nothing is detected in the first time constant, and what touches in less than half of it is not learnt.
-/// `bias_limit`: greatest bias of each joint in thresholds, default 30. `bias_settle_time` [s]: a torque that stands still
-/// for so long becomes the bias. `hysteresis`: share of its greatest torque in a contact that a joint's gear or sensor may
-/// keep after it, scalar or `(nv,)`, default 0.2; such a remainder becomes the bias up to two thresholds. `hold_time` [s], default 0.02: a signal stays on so
-/// long after it was last over its threshold. `max_contacts`, `pushing`, `locate_within`: as in `ContactIsolator`. Raises `InputError` that
-/// names the argument.
+/// It joins the momentum observer, the compensation of sensors, the tracking of the bias, detection and isolation.
+///
+/// Args:
+///     robot: the robot.
+///     dt: time between two calls [s].
+///     sensors: `ForceTorqueSensor`s, in the order of the readings.
+///     wanted_contacts: names of sensors whose contacts are meant (feet, hands): a contact behind them is no collision.
+///     observer_gain: gain of the momentum observer, scalar or `(nv,)` [1/s].
+///     torque_threshold: threshold on the external torque, scalar or `(nv,)` [Nm, N].
+///     wrench_threshold: threshold on the sensors' external wrenches: scalar, `(6,)` or `(n_sensors, 6)` [N, Nm].
+///     wrench_gain: gain of the low-pass on external wrenches [1/s], infinite for none. By default the smallest of
+///         `observer_gain`, and none where that is at least `0.5 / dt`.
+///     bias_time_constant: time constant of the tracking of the external torque that model errors cause without contact
+///         [s]; no tracking by default. Nothing is detected in the first time constant, and a contact that lasts less than
+///         half of it is not learnt.
+///     bias_limit: greatest bias of each joint, in thresholds.
+///     bias_settle_time: an external torque that stands still for so long becomes the bias [s]; never by default.
+///     hysteresis: share of its greatest torque in a contact that a joint's gear or sensor may keep after it, scalar or
+///         `(nv,)`. Such a remainder becomes the bias, up to two thresholds.
+///     hold_time: a signal stays on for so long after it was last over its threshold [s].
+///     max_contacts: number of contacts that are reported at most.
+///     pushing: whether forces push on the surface, as in `ContactIsolator`.
+///     locate_within: distance within which a contact counts as located [m], as in `ContactIsolator`.
+///
+/// Raises:
+///     InputError: an argument cannot be used; names it.
+///
+/// Example:
+///     >>> import contactsense as cs
+///     >>> robot = cs.Robot.named("iiwa14")
+///     >>> monitor = cs.ContactMonitor(robot, dt=1e-3, torque_threshold=1.0)
+///     >>> q, v = robot.neutral(), robot.velocity({})
+///     >>> monitor.update(q, v, robot.inverse_dynamics(q, v, v)).collision
+///     False
 #[pyclass(frozen, name = "ContactMonitor", module = "contactsense")]
 pub struct PyContactMonitor {
     robot: Py<PyRobot>,
@@ -189,7 +219,10 @@ impl PyContactMonitor {
     #[new]
     #[pyo3(signature = (robot, *, dt, sensors=None, wanted_contacts=None, observer_gain=None, torque_threshold=None,
                         wrench_threshold=None, wrench_gain=None, bias_time_constant=None, bias_limit=None, bias_settle_time=None, hysteresis=None, hold_time=None,
-                        max_contacts=None, pushing=true, locate_within=None))]
+                        max_contacts=None, pushing=true, locate_within=None),
+           text_signature = "(robot, *, dt, sensors=(), wanted_contacts=(), observer_gain=50.0, torque_threshold=0.5, \
+            wrench_threshold=2.0, wrench_gain=None, bias_time_constant=None, bias_limit=30.0, bias_settle_time=None, \
+            hysteresis=0.2, hold_time=0.02, max_contacts=5, pushing=True, locate_within=0.05)")]
     #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
         #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
@@ -250,13 +283,25 @@ impl PyContactMonitor {
         Ok(Self { robot: robot.unbind(), names, monitor: Mutex::new(monitor) })
     }
 
-    /// One tick: `q` `(nq,)`, `v` `(nv,)`, `tau` and `friction` `(nv,)` or `(nv - 6,)` for a floating base.
+    /// One tick.
     ///
-    /// `wrenches` `(n_sensors, 6)`: the sensors' readings, sensor axes [N, Nm]; a NaN in one leaves its sensor out for this
-    /// tick. `dt` [s]: time since the last accepted sample, for clocks that jitter and samples that were lost; by default
-    /// the constructor's, and as much again for every sample refused in between. Over a longer step than 50 ms (or five
-    /// times the constructor's) the external torque is kept as it was. Raises `InputError` that names the argument; the
-    /// state is then unchanged but for the time that passed.
+    /// Over a step longer than 50 ms (or five times the constructor's `dt`) the external torque is kept as it was.
+    ///
+    /// Args:
+    ///     q: configuration, `(nq,)`.
+    ///     v: velocity, `(nv,)` [rad/s, m/s].
+    ///     tau: motor torque, `(nv,)`, or `(nv - 6,)` for a floating base [Nm, N].
+    ///     wrenches: readings of the sensors, `(n_sensors, 6)`, sensor axes [N, Nm]. A NaN in a reading leaves its sensor out
+    ///         for this tick.
+    ///     dt: time since the last accepted sample [s], for clocks that jitter and samples that were lost. By default the
+    ///         constructor's, and as much again for every sample refused in between.
+    ///     friction: torque of friction, shaped as `tau`, which is subtracted from it [Nm, N].
+    ///
+    /// Returns:
+    ///     A `ContactReport`.
+    ///
+    /// Raises:
+    ///     InputError: an argument cannot be used; names it. The state is then unchanged but for the time that passed.
     #[pyo3(signature = (q, v, tau, wrenches=None, *, dt=None, friction=None))]
     #[allow(clippy::too_many_arguments)] // the arguments of the Python method
     fn update(

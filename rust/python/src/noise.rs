@@ -8,14 +8,24 @@ use crate::observer::scalar_or_vector;
 use crate::plain::{reduced, Reduced};
 use crate::returned::result;
 
-/// Errors of the external torque of the untouched robot, each as one standard deviation. What says how large errors are
-/// takes it as `noise`.
+/// Errors of the external torque of the untouched robot, each as one standard deviation.
 ///
-/// Each argument is a scalar or `(nv,)`. `torque` [Nm; N for sliding joints], default 0.05: white noise, per sample.
-/// `velocity` [rad/s, m/s], default 0: white noise of the velocity, which acts through the gain of an observer and the mass
-/// matrix; what is given an external torque leaves it out. `relative`, default 0.03: share of the contact's own torque; a
-/// tenth of it also of the largest one. `model` [Nm, N], default 0.1: slow errors left over (bias, friction, masses).
-/// Raises `InputError` that names the argument.
+/// What says how large errors are takes it as `noise`.
+///
+/// Args:
+///     torque: white noise of the torque, per sample, scalar or `(nv,)` [Nm; N for sliding joints].
+///     velocity: white noise of the velocity, per sample, scalar or `(nv,)` [rad/s; m/s for sliding joints]. It acts
+///         through the gain of an observer and the mass matrix; what is given an external torque leaves it out.
+///     relative: share of the contact's own torque, scalar or `(nv,)`; a tenth of it also of the largest one.
+///     model: slow errors left over (bias, friction, masses), scalar or `(nv,)` [Nm; N for sliding joints].
+///
+/// Raises:
+///     InputError: an argument is negative, not finite, or of a wrong shape; names it.
+///
+/// Example:
+///     >>> import contactsense as cs
+///     >>> cs.NoiseModel(torque=0.1).torque
+///     0.1
 #[pyclass(frozen, eq, skip_from_py_object, name = "NoiseModel", module = "contactsense")]
 #[derive(PartialEq, Clone)]
 pub struct PyNoiseModel(pub NoiseModel);

@@ -23,11 +23,24 @@ pub fn scalar_or_vector(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<f
 
 /// The generalised momentum observer (Vorndamme 2017, eqs. 4-6) with its acceleration (eq. 9).
 ///
-/// Estimates the external torque `(nv,)` from positions, velocities and motor torques; each component is the true
-/// one behind a first-order low-pass with time constant `1 / gain`. Stable for any `gain * dt`.
+/// It estimates the external torque from positions, velocities and motor torques. Each component is the true one behind
+/// a first-order low-pass with time constant `1 / gain`, for any `gain * dt`.
 ///
-/// `dt`: time between two calls [s]; `gain`: scalar or `(nv,)` [1/s], default 50. Raises `InputError` that names the
-/// argument.
+/// Args:
+///     robot: the robot that is observed.
+///     dt: time between two calls [s].
+///     gain: scalar or `(nv,)` [1/s].
+///
+/// Raises:
+///     InputError: an argument cannot be used; names it.
+///
+/// Example:
+///     >>> import contactsense as cs
+///     >>> robot = cs.Robot.named("iiwa14")
+///     >>> observer = cs.MomentumObserver(robot, dt=1e-3)
+///     >>> q, v = robot.neutral(), robot.velocity({})
+///     >>> observer.update(q, v, robot.inverse_dynamics(q, v, v)).shape
+///     (7,)
 #[pyclass(frozen, name = "MomentumObserver", module = "contactsense")]
 pub struct PyMomentumObserver {
     robot: Py<PyRobot>,
@@ -43,7 +56,7 @@ impl PyMomentumObserver {
 #[pymethods]
 impl PyMomentumObserver {
     #[new]
-    #[pyo3(signature = (robot, *, dt, gain=None))]
+    #[pyo3(signature = (robot, *, dt, gain=None), text_signature = "(robot, *, dt, gain=50.0)")]
     fn new(
         #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
         dt: Number<'_, '_>,
@@ -56,11 +69,21 @@ impl PyMomentumObserver {
         Ok(Self { robot: robot.unbind(), observer })
     }
 
-    /// One tick; the external torque `(nv,)`, a fresh array. The first call sets the initial momentum, returns zeros.
+    /// One tick. The first call sets the initial momentum and returns zeros.
     ///
-    /// `q` `(nq,)`, `v` `(nv,)`, `tau` `(nv,)` or `(nv - 6,)` for a floating base: measured at one instant (a torque held
-    /// over the steps before and after: its mean). `dt` replaces the constructor's for this step; `friction`, shaped as
-    /// `tau`, is subtracted from it. Raises `InputError` that names the argument; the state is then unchanged.
+    /// Args:
+    ///     q: configuration, `(nq,)`.
+    ///     v: velocity, `(nv,)` [rad/s, m/s], measured at the same instant.
+    ///     tau: motor torque, `(nv,)`, or `(nv - 6,)` for a floating base [Nm, N]; of a torque that is held over the steps
+    ///         before and after, their mean.
+    ///     dt: length of this step [s], where it differs from the constructor's.
+    ///     friction: torque of friction, shaped as `tau`, which is subtracted from it [Nm, N].
+    ///
+    /// Returns:
+    ///     The external torque, `(nv,)` [Nm, N].
+    ///
+    /// Raises:
+    ///     InputError: an argument cannot be used; names it. The state is then unchanged.
     #[pyo3(signature = (q, v, tau, *, dt=None, friction=None))]
     fn update<'py>(
         &self,
@@ -117,13 +140,13 @@ impl PyMomentumObserver {
         Ok(())
     }
 
-    /// Of the last tick, `(nv,)`; a copy.
+    /// The external torque of the last tick, `(nv,)` [Nm, N].
     #[getter]
     fn external_torque<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         Ok(result(py, self.sole(py)?.external_torque()))
     }
 
-    /// Estimated acceleration at the last tick, `(nv,)`: forward dynamics with the external torque.
+    /// The acceleration estimated at the last tick, `(nv,)` [rad/s^2, m/s^2]: forward dynamics with the external torque.
     #[getter]
     fn acceleration<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         Ok(result(py, self.sole(py)?.acceleration()))

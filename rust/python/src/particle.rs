@@ -24,20 +24,20 @@ use crate::returned::{from_rows, read_only, result};
 use crate::robot::PyRobot;
 use crate::sensor::names;
 
-/// A copy of the particles, one row each.
+/// The particles of a filter, one row each.
 #[pyclass(frozen, get_all, module = "contactsense")]
 pub struct Particles {
-    /// `(n,)`, index into `robot.link_names`.
+    /// Links, `(n,)`: places in `robot.link_names`.
     link: Py<PyArray1<i64>>,
-    /// `(n, 3)`, world frame [m].
+    /// Contact points, `(n, 3)`, world frame [m].
     point: Py<PyArray2<f64>>,
-    /// `(n, 3)`, outward, world frame.
+    /// Outward normals, `(n, 3)`, world frame.
     normal: Py<PyArray2<f64>>,
-    /// `(n,)`, along the inward normal [N].
+    /// Forces along the inward normal, `(n,)` [N].
     force: Py<PyArray1<f64>>,
-    /// `(n,)` [N/m].
+    /// Stiffnesses, `(n,)` [N/m].
     stiffness: Py<PyArray1<f64>>,
-    /// `(n,)`, sums to one.
+    /// Weights, `(n,)`; their sum is one.
     weight: Py<PyArray1<f64>>,
 }
 
@@ -79,25 +79,45 @@ impl Particles {
 
 /// Finds one contact anywhere on a robot from joint torques, by particles on its surface (Bimbo 2019).
 ///
-/// Each particle is a hypothesis of link, point, obstacle, force and stiffness; those that predict the torques while the
-/// robot makes small motions in contact survive. Frictionless, one contact, a convex obstacle that stays where it is.
+/// Each particle is a hypothesis of link, point, obstacle, force and stiffness. Those that predict the torques while the
+/// robot makes small motions in contact survive. It assumes one frictionless contact with a convex obstacle that stays
+/// where it is.
 ///
-/// `particles`: how many, default 10,000. `motion`: "curvature" (eq. 8), or the baselines "fixed_on_link" and
-/// "fixed_in_world". `measurement`: "normal" (frictionless) or "friction_cone" with `friction` (default
-/// 0.5): forces across the normal up to so much of it, integrated out. `links`: names of those to look on, by default all that
-/// move and have a surface. `seed`: same seed, same answer, for any number of `threads` (default 1). `force_range` [N],
-/// `stiffness_range` [N/m] and `radius_range` [m] of the obstacle's curvature: least and greatest at the start, default
-/// (1, 100), (3e2, 3e4), (5e-3, 1).
+/// Args:
+///     robot: the robot.
+///     particles: number of particles.
+///     motion: model of how a contact moves: "curvature" (Bimbo 2019, eq. 8), or the baselines "fixed_on_link" and
+///         "fixed_in_world".
+///     measurement: "normal" (frictionless) or "friction_cone" (forces across the normal up to `friction` times the normal
+///         force, integrated out).
+///     friction: coefficient of friction of the "friction_cone".
+///     links: names of the links to look on; by default all that move and have a surface.
+///     seed: the same seed gives the same answer, for any number of `threads`.
+///     force_range: least and greatest force at the start [N].
+///     stiffness_range: least and greatest stiffness at the start [N/m].
+///     radius_range: least and greatest radius of the obstacle's curvature at the start [m].
+///     schedule: "adaptive" (or None; by what the data show), "paper", or a mapping of some of "sharpness" (alpha [1/Nm]),
+///         "point_noise" [m], "force_noise" and "stiffness_noise" (relative), each a number or a pair (first, last), and
+///         "updates", the number after which the last is reached.
+///     threads: number of threads.
+///     likelihood: "gaussian" (force and stiffness are integrated out) or "exponential" (Bimbo 2019, eq. 5; both are drawn
+///         at random).
+///     torque_noise: standard deviation of the torques at rest, scalar or `(nv,)` [Nm, N]. Greater noise is learnt.
+///     relative_noise: standard deviation relative to the torque.
+///     torque_threshold: external torque below which on every joint there is no contact, scalar or `(nv,)` [Nm, N]. The
+///         default is more where three standard deviations at rest are; with `noise` it is these.
+///     noise: a `NoiseModel` in place of `torque_noise` and `relative_noise`.
 ///
-/// `likelihood`: "gaussian" (default; force and stiffness are integrated out) or "exponential" (eq. 5, both are drawn at
-/// random). `torque_noise`: standard deviation at rest, scalar or `(nv,)` [Nm], default 0.02; `relative_noise`: relative
-/// to the torque, default 0.03. `noise`: a `NoiseModel` in place of these two.
-/// Greater noise is learnt from what is left over. `torque_threshold`: below it on every joint there is no contact, scalar
-/// or `(nv,)` [Nm], default three standard deviations at rest (0.06).
+/// Raises:
+///     InputError: an argument cannot be used; names it.
+///     MemoryError: the particles do not fit into memory.
 ///
-/// `schedule`: None (by what the data show), "paper", or a dict of some of "sharpness" (alpha, [1/Nm]), "point_noise" [m],
-/// "force_noise" and "stiffness_noise" (relative), each a number or a pair (first, last), and "updates", after which the
-/// last is reached. Raises `InputError` that names the argument, and `MemoryError` where the particles do not fit.
+/// Example:
+///     >>> import contactsense as cs
+///     >>> robot = cs.Robot.named("iiwa14")
+///     >>> particle_filter = cs.ContactParticleFilter(robot, particles=100)
+///     >>> particle_filter.update(robot.neutral(), robot.torque({})).contact
+///     False
 #[pyclass(frozen, name = "ContactParticleFilter", module = "contactsense")]
 pub struct PyContactParticleFilter {
     filter: Mutex<ContactParticleFilter>,
@@ -117,9 +137,9 @@ impl PyContactParticleFilter {
     #[pyo3(signature = (robot, *, particles=None, motion=Choice::of("curvature"), measurement=Choice::of("normal"), friction=None, links=None, seed=None,
         force_range=None, stiffness_range=None, radius_range=None, schedule=None, threads=None,
         likelihood=Choice::of("gaussian"), torque_noise=None, relative_noise=None, torque_threshold=None, noise=None),
-        text_signature = "(robot, *, particles=None, motion='curvature', measurement='normal', friction=None, links=None, \
-            seed=None, force_range=None, stiffness_range=None, radius_range=None, schedule=None, threads=None, \
-            likelihood='gaussian', torque_noise=None, relative_noise=None, torque_threshold=None, noise=None)")]
+        text_signature = "(robot, *, particles=10_000, motion='curvature', measurement='normal', friction=0.5, links=None, seed=0, \
+            force_range=(1.0, 100.0), stiffness_range=(3e2, 3e4), radius_range=(5e-3, 1.0), schedule='adaptive', threads=1, \
+            likelihood='gaussian', torque_noise=0.02, relative_noise=0.03, torque_threshold=0.2, noise=None)")]
     #[allow(clippy::too_many_arguments)] // named in Python
     fn new(
         #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
@@ -188,11 +208,15 @@ impl PyContactParticleFilter {
             return Err(input(py, "noise: give it or torque_noise and relative_noise, not both".into()));
         }
         options.noise = noise.map(noise_model).transpose()?;
-        if let Some(noise) = torque_noise {
-            options.torque_noise = scalar_or_vector("torque_noise", noise)?;
+        if let Some(torque_noise) = torque_noise {
+            options.torque_noise = scalar_or_vector("torque_noise", torque_noise)?;
         }
-        if let Some(noise) = relative_noise {
-            options.relative_noise = noise.0;
+        if let Some(share) = relative_noise {
+            options.relative_noise = share.0;
+        }
+        if noise.is_some() {
+            // The threshold follows from it, too.
+            options.torque_threshold = None;
         }
         if let Some(threshold) = torque_threshold {
             options.torque_threshold = Some(scalar_or_vector("torque_threshold", threshold)?);
@@ -204,13 +228,21 @@ impl PyContactParticleFilter {
         Ok(Self { filter: Mutex::new(filter), robot: robot.unbind(), names })
     }
 
-    /// Takes in a configuration `q` `(nq,)` and the external torque `tau_ext` `(nv,)` measured there [Nm; N for sliding
-    /// joints and a base's linear part]; returns what the particles say.
+    /// Takes in a configuration and the external torque measured there.
     ///
-    /// `tau_ext` is what `MomentumObserver` gives, or `g(q) - tau` where the robot holds still. The first call that feels a
-    /// contact spreads the particles over the surface. `time` [s] is handed on to the estimate. Other Python threads run
-    /// meanwhile. With many particles Ctrl-C stops the call, and the filter has then forgotten all updates. Raises
-    /// `InputError` that names the argument; the filter is then unchanged.
+    /// The first call with a contact spreads the particles over the surface. Other Python threads run meanwhile. With many
+    /// particles Ctrl-C stops the call, and the filter has then forgotten all updates.
+    ///
+    /// Args:
+    ///     q: configuration, `(nq,)`.
+    ///     tau_ext: external torque, `(nv,)` [Nm, N]: what `MomentumObserver` gives, or `g(q) - tau` where the robot holds still.
+    ///     time: time of the measurement [s], which is handed on to the estimate.
+    ///
+    /// Returns:
+    ///     A `ContactEstimate`.
+    ///
+    /// Raises:
+    ///     InputError: an argument cannot be used; names it. The filter is then unchanged.
     #[pyo3(signature = (q, tau_ext, *, time=None))]
     fn update(
         &self,
@@ -253,7 +285,7 @@ impl PyContactParticleFilter {
         Ok(())
     }
 
-    /// The particles after the last update; a copy.
+    /// The particles after the last update.
     #[getter]
     fn particles(&self, py: Python<'_>) -> PyResult<Particles> {
         let filter = self.sole(py)?;

@@ -72,7 +72,7 @@ impl PyRobot {
         PyTuple::new(py, self.0.joint_names())
     }
 
-    /// One of "free_flyer", "revolute", "continuous", "prismatic" a joint.
+    /// How each joint moves: "free_flyer", "revolute", "continuous" or "prismatic".
     #[getter]
     fn joint_kinds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.0.joint_kinds().map(|kind| kind.name()))
@@ -124,15 +124,18 @@ impl PyRobot {
         read_only(PyArray1::from_vec(py, self.0.effort_limits()))
     }
 
-    /// A configuration, `(nq,)`, from joint positions by name in any order; joints that are not named are neutral.
+    /// A configuration from joint positions by name, in any order; joints that are not named are neutral.
     ///
     /// Args:
     ///     positions: `{joint: position}` [rad; m for sliding joints]; continuous joints take their angle.
-    ///     base: pose of a floating base in the world: position [m] and quaternion xyzw, `(7,)`, or a `(4, 4)` matrix.
+    ///     base: pose of a floating base in the world: position [m] and quaternion xyzw, `(7,)`, or a matrix, `(4, 4)`.
+    ///
+    /// Returns:
+    ///     `(nq,)`, writable.
     ///
     /// Raises:
-    ///     InputError: a name is no joint's (the message lists those that are), a value is not finite, or the base of
-    ///         this robot is fixed.
+    ///     InputError: a name is no joint's (the message lists those that are), a value is not finite, or the base of this
+    ///         robot is fixed.
     #[pyo3(signature = (positions, *, base=None))]
     fn configuration<'py>(
         &self,
@@ -146,11 +149,14 @@ impl PyRobot {
         Ok(PyArray1::from_vec(py, q.map_err(|error| to_python(py, error))?))
     }
 
-    /// A velocity, `(nv,)`, from joint velocities by name in any order; joints that are not named stand still.
+    /// A velocity from joint velocities by name, in any order; joints that are not named stand still.
     ///
     /// Args:
     ///     velocities: `{joint: velocity}` [rad/s; m/s for sliding joints].
     ///     base: linear [m/s] and angular [rad/s] velocity of a floating base in its own frame, `(6,)`.
+    ///
+    /// Returns:
+    ///     `(nv,)`, writable.
     ///
     /// Raises:
     ///     InputError: as for `configuration`.
@@ -167,10 +173,13 @@ impl PyRobot {
         Ok(PyArray1::from_vec(py, v.map_err(|error| to_python(py, error))?))
     }
 
-    /// Torques, `(nv,)`, from joint torques by name in any order; the others, and a floating base's, are zero.
+    /// Torques from joint torques by name, in any order; the others, and a floating base's, are zero.
     ///
     /// Args:
     ///     torques: `{joint: torque}` [Nm; N for sliding joints].
+    ///
+    /// Returns:
+    ///     `(nv,)`, writable.
     ///
     /// Raises:
     ///     InputError: as for `configuration`.
@@ -181,13 +190,20 @@ impl PyRobot {
         Ok(PyArray1::from_vec(py, tau))
     }
 
-    /// The configuration, `(nq,)`, that a second of motion at constant velocity `v` leads to from `q`.
+    /// The configuration that a second of motion at constant velocity leads to, as `pinocchio.integrate`.
     ///
-    /// The same as `pinocchio.integrate`: a floating base moves along its twist, given in its own frame; (cos, sin)
-    /// pairs turn. For a step of `dt` pass `dt * v`.
+    /// A floating base moves along its twist, which is given in its own frame; (cos, sin) pairs turn. For a step of `dt` pass
+    /// `dt * v`.
+    ///
+    /// Args:
+    ///     q: configuration, `(nq,)`.
+    ///     v: velocity, `(nv,)` [rad/s, m/s].
+    ///
+    /// Returns:
+    ///     `(nq,)`, writable.
     ///
     /// Raises:
-    ///     InputError: names the argument.
+    ///     InputError: an argument cannot be used; names it.
     fn integrate<'py>(
         &self,
         q: &Bound<'py, PyAny>,
@@ -199,10 +215,19 @@ impl PyRobot {
         Ok(PyArray1::from_vec(py, next))
     }
 
-    /// A random configuration, `(nq,)`; the same for the same seed.
+    /// A random configuration; the same for the same seed.
     ///
-    /// Joints are uniform within their limits, within half a turn either way where they have none (sliding joints
-    /// within 1 m); a floating base is within 1 m of the origin along each axis, its orientation uniform.
+    /// Joints are uniform within their limits, within half a turn either way where they have none (sliding joints within 1 m).
+    /// A floating base is within 1 m of the origin along each axis, and its orientation is uniform.
+    ///
+    /// Args:
+    ///     seed: a whole number, not negative.
+    ///
+    /// Returns:
+    ///     `(nq,)`, writable.
+    ///
+    /// Raises:
+    ///     InputError: the seed is no such number.
     fn random_configuration<'py>(
         &self,
         py: Python<'py>,
@@ -225,7 +250,7 @@ impl PyRobot {
         Ok(Self(Arc::new(loaded.map_err(|error| to_python(py, error))?)))
     }
 
-    /// What was odd in the description, and what was done about it.
+    /// What was odd in the description, and what was done about it; also logged as warnings of "contactsense".
     #[getter]
     fn warnings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.0.warnings())
@@ -236,18 +261,34 @@ impl PyRobot {
         PyArray1::from_vec(py, self.0.neutral())
     }
 
-    /// The joint-space mass matrix `M(q)`, `(nv, nv)`.
+    /// The joint-space mass matrix `M(q)`.
     ///
-    /// Raises `InputError` where `q` is not `(nq,)`, finite, with unit quaternions and (cos, sin) pairs.
+    /// Args:
+    ///     q: configuration, `(nq,)`.
+    ///
+    /// Returns:
+    ///     `(nv, nv)` [kg m^2; kg for sliding joints and a base's linear part].
+    ///
+    /// Raises:
+    ///     InputError: `q` is not finite, or without unit quaternions and (cos, sin) pairs.
     fn mass_matrix<'py>(&self, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let py = q.py();
         let q = Vector::new("q", q)?;
         matrix(py, &self.0.mass_matrix(q.slice()).map_err(|error| to_python(py, error))?)
     }
 
-    /// `M(q) a + C(q, v) v + g(q)`, `(nv,)` [Nm; N for sliding joints and a base's linear part].
+    /// The torque of a motion, `M(q) a + C(q, v) v + g(q)`.
     ///
-    /// Raises `InputError` that names the argument.
+    /// Args:
+    ///     q: configuration, `(nq,)`.
+    ///     v: velocity, `(nv,)` [rad/s, m/s].
+    ///     a: acceleration, `(nv,)` [rad/s^2, m/s^2].
+    ///
+    /// Returns:
+    ///     `(nv,)` [Nm; N for sliding joints and a base's linear part].
+    ///
+    /// Raises:
+    ///     InputError: an argument cannot be used; names it.
     fn inverse_dynamics<'py>(
         &self,
         q: &Bound<'py, PyAny>,
@@ -260,10 +301,21 @@ impl PyRobot {
         Ok(PyArray1::from_vec(py, tau.map_err(|error| to_python(py, error))?))
     }
 
-    /// `M(q)^-1 (tau + tau_ext - C(q, v) v - g(q))`, `(nv,)`.
+    /// The acceleration of torques, `M(q)^-1 (tau + tau_ext - C(q, v) v - g(q))`.
     ///
-    /// `tau` is `(nv,)`, or `(nv - 6,)` for a floating base; `tau_ext` is `(nv,)`. A joint that moves no inertia gets
-    /// acceleration 0. Raises `InputError` that names the argument.
+    /// A joint that moves no inertia gets acceleration 0.
+    ///
+    /// Args:
+    ///     q: configuration, `(nq,)`.
+    ///     v: velocity, `(nv,)` [rad/s, m/s].
+    ///     tau: motor torque, `(nv,)`, or `(nv - 6,)` for a floating base [Nm, N].
+    ///     tau_ext: external torque, `(nv,)` [Nm, N]; none by default.
+    ///
+    /// Returns:
+    ///     `(nv,)` [rad/s^2, m/s^2].
+    ///
+    /// Raises:
+    ///     InputError: an argument cannot be used; names it.
     #[pyo3(signature = (q, v, tau, tau_ext=None))]
     fn forward_dynamics<'py>(
         &self,
@@ -280,9 +332,17 @@ impl PyRobot {
         Ok(PyArray1::from_vec(py, a.map_err(|error| to_python(py, error))?))
     }
 
-    /// Pose of a link in the world, `(4, 4)`; any URDF link, also one without surface.
+    /// Pose of a link in the world.
     ///
-    /// Raises `InputError` that names the argument; an unknown link's message lists the links.
+    /// Args:
+    ///     q: configuration, `(nq,)`.
+    ///     link: name of any link, also one without surface.
+    ///
+    /// Returns:
+    ///     `(4, 4)`, homogeneous [m].
+    ///
+    /// Raises:
+    ///     InputError: an argument cannot be used; an unknown link's message lists the links.
     fn link_pose<'py>(
         &self,
         q: &Bound<'py, PyAny>,
@@ -294,10 +354,18 @@ impl PyRobot {
         pose(py, &self.0.link_pose(q.slice(), link).map_err(|error| to_python(py, error))?)
     }
 
-    /// Geometric Jacobian of a link, `(6, nv)`, linear rows first, world axes, at a world `point` fixed to the link
-    /// (default: the link's origin).
+    /// Geometric Jacobian of a link, linear rows first, world axes.
     ///
-    /// Raises `InputError` that names the argument.
+    /// Args:
+    ///     q: configuration, `(nq,)`.
+    ///     link: name of any link.
+    ///     point: a point fixed to the link, `(3,)`, world frame [m]; the link's origin by default.
+    ///
+    /// Returns:
+    ///     `(6, nv)`.
+    ///
+    /// Raises:
+    ///     InputError: an argument cannot be used; names it.
     #[pyo3(signature = (q, link, point=None))]
     fn jacobian<'py>(
         &self,
@@ -315,7 +383,14 @@ impl PyRobot {
 
     /// The surface of a link, in the link frame.
     ///
-    /// Raises `InputError` where the link is unknown or has no surface.
+    /// Args:
+    ///     link: name of a link that has a surface.
+    ///
+    /// Returns:
+    ///     A `Surface`.
+    ///
+    /// Raises:
+    ///     InputError: the link is unknown or has no surface; the message lists those that have one.
     fn surface(slf: &Bound<'_, Self>, link: &Bound<'_, PyAny>) -> PyResult<PySurface> {
         let (py, this) = (slf.py(), slf.get());
         let index = this.link(link)?;

@@ -17,9 +17,22 @@ const LAST_ROW: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
 
 /// A six-axis force/torque sensor where `link` joins its parent: `link` and all behind it load the sensor.
 ///
-/// `pose`: `(4, 4)`, the sensor frame in the link's, default the link frame itself. A reading is (force, moment) about
-/// the sensor frame's origin, in its axes [N, Nm]; `convention` "load": what the distal side exerts on the sensor (a free
-/// hand at rest: its weight), "support": the opposite. Raises `InputError` that names the argument.
+/// A reading is (force, moment) about the origin of the sensor frame, in its axes [N, Nm].
+///
+/// Args:
+///     name: its name, as results report it.
+///     link: name of the link that it joins to the link's parent.
+///     pose: the sensor frame in the link's, `(4, 4)`; the link frame itself by default.
+///     convention: "load", what the distal side exerts on the sensor (a free hand at rest: its weight), or "support", the
+///         opposite.
+///
+/// Raises:
+///     InputError: an argument cannot be used; names it.
+///
+/// Example:
+///     >>> import contactsense as cs
+///     >>> cs.ForceTorqueSensor("wrist", "iiwa_link_7").convention
+///     'load'
 #[pyclass(frozen, eq, skip_from_py_object, name = "ForceTorqueSensor", module = "contactsense")]
 #[derive(PartialEq, Clone)]
 pub struct PyForceTorqueSensor(pub ForceTorqueSensor);

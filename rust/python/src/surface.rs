@@ -27,7 +27,15 @@ const BLOCK: usize = 256;
 /// Hits of one ray that have room at first: more than a ray has of any robot's link.
 const RAY_HITS: usize = 64;
 
-/// One link's surface, in the link frame.
+/// The surface of one link, in the link frame.
+///
+/// `Robot.surface` gives it.
+///
+/// Example:
+///     >>> import contactsense as cs
+///     >>> surface = cs.Robot.named("iiwa14").surface("iiwa_link_3")
+///     >>> surface.closest_points([[0.0, 0.0, 1.0]]).points.shape
+///     (1, 3)
 #[pyclass(frozen, name = "Surface", module = "contactsense")]
 pub struct PySurface {
     pub robot: Arc<Robot>,
@@ -36,42 +44,42 @@ pub struct PySurface {
     pub owner: Py<PyAny>,
 }
 
-/// Nearest points, one row a query.
+/// Nearest points of a surface, one row per query.
 #[pyclass(frozen, get_all, module = "contactsense")]
 pub struct ClosestPoints {
-    /// `(n, 3)`, link frame [m].
+    /// Points, `(n, 3)`, link frame [m].
     points: Py<PyArray2<f64>>,
-    /// `(n, 3)`, outward.
+    /// Outward normals, `(n, 3)`, link frame.
     normals: Py<PyArray2<f64>>,
-    /// `(n,)`, unsigned [m].
+    /// Distances, `(n,)`, unsigned [m].
     distances: Py<PyArray1<f64>>,
-    /// `(n,)`, rows of `Surface.triangles`; -1 on an exact primitive.
+    /// Triangles, `(n,)`: rows of `Surface.triangles`; -1 on an exact primitive.
     triangles: Py<PyArray1<i64>>,
 }
 
-/// Every hit of a batch of rays, sorted per ray.
+/// All hits of a batch of rays, sorted by distance per ray.
 #[pyclass(frozen, get_all, module = "contactsense")]
 pub struct RayHits {
-    /// `(k,)`, row of the query.
+    /// Rays, `(k,)`: rows of the query.
     ray: Py<PyArray1<i64>>,
-    /// `(k,)`, from the origin [m].
+    /// Distances from the origin, `(k,)` [m].
     distance: Py<PyArray1<f64>>,
-    /// `(k, 3)`, link frame [m].
+    /// Points, `(k, 3)`, link frame [m].
     point: Py<PyArray2<f64>>,
-    /// `(k, 3)`, outward.
+    /// Outward normals, `(k, 3)`, link frame.
     normal: Py<PyArray2<f64>>,
-    /// `(k,)`; -1 on an exact primitive.
+    /// Triangles, `(k,)`: rows of `Surface.triangles`; -1 on an exact primitive.
     triangle: Py<PyArray1<i64>>,
 }
 
 /// Random points of a surface.
 #[pyclass(frozen, get_all, module = "contactsense")]
 pub struct SurfaceSamples {
-    /// `(n, 3)`, link frame [m].
+    /// Points, `(n, 3)`, link frame [m].
     points: Py<PyArray2<f64>>,
-    /// `(n, 3)`, outward.
+    /// Outward normals, `(n, 3)`, link frame.
     normals: Py<PyArray2<f64>>,
-    /// `(n,)`; -1 on an exact primitive.
+    /// Triangles, `(n,)`: rows of `Surface.triangles`; -1 on an exact primitive.
     triangles: Py<PyArray1<i64>>,
 }
 
@@ -194,7 +202,7 @@ impl PySurface {
         Ok(read_only(PyArray1::from_vec(py, flat).reshape([triangles.len(), 3])?))
     }
 
-    /// Sum of the parts' areas [m^2]; where parts overlap, both count.
+    /// Sum of the areas of the parts [m^2]; where parts overlap, both count.
     #[getter]
     fn area(&self, py: Python<'_>) -> PyResult<f64> {
         Ok(self.core(py)?.area())
@@ -220,10 +228,17 @@ impl PySurface {
         Ok(format!("Surface('{link}', {count} triangles, area={area:.4} m^2, watertight={closed})"))
     }
 
-    /// The nearest surface point of each query; the minimum over the link's parts.
+    /// The nearest surface point of each query, over all parts of the link.
     ///
-    /// `points` is `(n, 3)` in the link frame [m]. Distances are unsigned. Raises `InputError` that names the argument,
-    /// `MemoryError` where the answer does not fit into memory.
+    /// Args:
+    ///     points: `(n, 3)`, link frame [m].
+    ///
+    /// Returns:
+    ///     `ClosestPoints`; distances are unsigned.
+    ///
+    /// Raises:
+    ///     InputError: the argument cannot be used.
+    ///     MemoryError: the answer does not fit into memory.
     fn closest_points(&self, py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<ClosestPoints> {
         let surface = self.core(py)?;
         let points = rows::<3>("points", points)?;
@@ -249,11 +264,20 @@ impl PySurface {
         })
     }
 
-    /// Every hit of each ray, sorted by distance per ray. Watertight: a closed mesh is entered as often as left.
+    /// All hits of each ray, sorted by distance per ray.
     ///
-    /// `origins` and `directions` are `(n, 3)` in the link frame; directions need not be unit, distances are in metres.
-    /// Hits inside another closed part of the link are left out. Raises `InputError` that names the argument,
-    /// `MemoryError` where the answer does not fit into memory.
+    /// It is watertight: a closed mesh is entered as often as left. Hits inside another closed part of the link are left out.
+    ///
+    /// Args:
+    ///     origins: `(n, 3)`, link frame [m].
+    ///     directions: `(n, 3)`, link frame; they need not be unit vectors.
+    ///
+    /// Returns:
+    ///     `RayHits`; distances are in metres.
+    ///
+    /// Raises:
+    ///     InputError: an argument cannot be used; names it.
+    ///     MemoryError: the answer does not fit into memory.
     fn cast_rays(
         &self,
         py: Python<'_>,
@@ -306,10 +330,18 @@ impl PySurface {
         })
     }
 
-    /// `n` random points, uniform by area over the exposed surface; the same for the same seed.
+    /// Random points, uniform by area over the exposed surface.
     ///
-    /// A larger `n` appends to the same points. Raises `InputError` that names the argument, `MemoryError` where the points
-    /// do not fit into memory.
+    /// Args:
+    ///     n: number of points. A larger number appends to the same points.
+    ///     seed: the same seed gives the same points.
+    ///
+    /// Returns:
+    ///     `SurfaceSamples`.
+    ///
+    /// Raises:
+    ///     InputError: an argument cannot be used; names it.
+    ///     MemoryError: the points do not fit into memory.
     #[pyo3(signature = (n, seed=None), text_signature = "($self, n, seed=0)")]
     fn sample(
         &self,

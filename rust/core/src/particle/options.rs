@@ -94,7 +94,7 @@ pub struct FilterOptions {
     /// Standard deviation of a torque relative to its size.
     pub relative_noise: f64,
     /// Below it on every joint there is no contact, one for all or one a joint (Nm). None for three standard deviations of
-    /// the noise at rest.
+    /// the noise at rest, and at least 0.2 Nm where that noise is `torque_noise`.
     pub torque_threshold: Option<Vec<f64>>,
     /// Errors of the torques, in place of `torque_noise` and `relative_noise`, which are a short form of it.
     pub noise: Option<NoiseModel>,
@@ -126,6 +126,8 @@ impl Default for FilterOptions {
     }
 }
 
+/// `torque_noise` says nothing of the slow errors that are left of bias and friction (Nm).
+const LEAST_THRESHOLD: f64 = 0.2;
 /// As many particles or threads at most.
 const MOST_PARTICLES: usize = 10_000_000;
 const MOST_THREADS: usize = 256;
@@ -194,8 +196,11 @@ impl FilterOptions {
 
     /// Below these torques on every joint there is no contact.
     pub(super) fn threshold(&self, robot: &Robot, noise: &TorqueNoise) -> Result<Vec<f64>> {
-        let given = self.torque_threshold.as_ref();
-        given.map_or_else(|| Ok(noise.threshold()), |given| Self::per_joint(robot, "torque_threshold", given))
+        let Some(given) = &self.torque_threshold else {
+            let least = if self.noise.is_none() { LEAST_THRESHOLD } else { 0.0 };
+            return Ok(noise.threshold().into_iter().map(|threshold| threshold.max(least)).collect());
+        };
+        Self::per_joint(robot, "torque_threshold", given)
     }
 
     /// One positive number a velocity variable.

@@ -179,6 +179,7 @@ impl Robot {
     /// # Errors
     /// As [`from_urdf`] and [`Robot::new`].
     pub fn from_urdf(path: impl AsRef<Path>, options: &UrdfOptions) -> Result<Robot> {
-        Robot::new(from_urdf(path, options)?)
+        let path = path.as_ref();
+        Robot::new(from_urdf(path, options)?).map_err(|error| error.in_file(path))
     }
 }

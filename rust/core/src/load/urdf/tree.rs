@@ -10,7 +10,9 @@ use crate::robot::check::{check_unique, list};
 /// The joint that a floating base adds.
 pub(super) const ROOT_JOINT: &str = "root_joint";
 
+/// Far beyond any robot.
 const LONGEST_CHAIN: usize = 1000;
+const MOST_JOINTS: usize = 1000;
 
 /// A link, the joint that carries it, and which visit its parent link was.
 pub(super) struct Visit {
@@ -62,6 +64,10 @@ pub(super) fn visits(robot: &Robot, floating_base: bool) -> Result<Vec<Visit>> {
                 "floats inside the robot; a joint can float from the root link only, without floating_base";
             return Err(Error::model(format!("{owner} {text}")).of(&owner));
         }
+    }
+    let count = moving(robot).count();
+    if count > MOST_JOINTS {
+        return Err(Error::model(format!("{count} joints move; supported: up to {MOST_JOINTS}")));
     }
     let mut visits: Vec<Visit> = Vec::with_capacity(robot.links.len());
     let mut ahead: Vec<(Visit, usize)> =

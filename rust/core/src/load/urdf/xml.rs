@@ -4,6 +4,7 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::Reader;
 
 use crate::error::{Error, Result};
+use crate::load::problem::Problem;
 
 /// An element; text between elements is not kept.
 #[derive(Clone, Default)]
@@ -13,8 +14,13 @@ pub(super) struct Element {
     pub children: Vec<Element>,
 }
 
-fn not_xml(what: impl std::fmt::Display) -> Error {
-    Error::model(format!("it is not XML: {what}"))
+fn not_xml(what: impl Into<Problem>) -> Error {
+    let Problem { text, cause } = what.into();
+    Error::model(format!("it is not XML: {text}")).because(cause)
+}
+
+fn broken(cause: impl std::error::Error + Send + Sync + 'static) -> Error {
+    not_xml(Problem::from_error(cause))
 }
 
 impl Element {
@@ -26,7 +32,7 @@ impl Element {
         // The root's parent, the root, and what is open in it.
         let mut open = vec![Element::default()];
         loop {
-            let (start, is_empty) = match reader.read_event().map_err(not_xml)? {
+            let (start, is_empty) = match reader.read_event().map_err(broken)? {
                 Event::Start(start) => (start, false),
                 Event::Empty(start) => (start, true),
                 Event::End(_) => {
@@ -46,7 +52,7 @@ impl Element {
             let element = Element::new(&start)?;
             if open.len() > 1 && !is_read(&open[open.len() - 1].tag, &element.tag) {
                 if !is_empty {
-                    reader.read_to_end(start.name()).map_err(not_xml)?;
+                    reader.read_to_end(start.name()).map_err(broken)?;
                 }
                 continue;
             }
@@ -60,8 +66,8 @@ impl Element {
     fn new(start: &BytesStart<'_>) -> Result<Element> {
         let mut attributes = vec![];
         for attribute in start.attributes().with_checks(false) {
-            let attribute = attribute.map_err(not_xml)?;
-            let value = attribute.decode_and_unescape_value(start.decoder()).map_err(not_xml)?;
+            let attribute = attribute.map_err(broken)?;
+            let value = attribute.decode_and_unescape_value(start.decoder()).map_err(broken)?;
             let name = String::from_utf8_lossy(attribute.key.as_ref()).into_owned();
             attributes.push((name, value.into_owned()));
         }

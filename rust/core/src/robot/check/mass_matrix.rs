@@ -8,6 +8,8 @@ use crate::error::{Error, Result};
 use crate::robot::description::JointKind;
 use crate::robot::Robot;
 
+/// The check takes a time that grows with their cube: seconds for so many.
+const MOST_VARIABLES: usize = 1000;
 const RANK: f64 = 1e-12;
 const INDEFINITE_SHARE: f64 = 1e-6;
 /// Entries of a null vector below this are rounding errors.
@@ -20,6 +22,11 @@ const TAKES_PART: f64 = 1e-3;
 pub(crate) fn check_mass_matrix(robot: &Robot) -> Result<Option<String>> {
     if robot.nv() == 0 {
         return Ok(None);
+    }
+    if robot.nv() > MOST_VARIABLES {
+        return Ok(Some(format!(
+            "The mass matrix of more than {MOST_VARIABLES} velocity variables is not checked"
+        )));
     }
     let mut idle = vec![true; robot.nv()];
     for turn in 0..3 {

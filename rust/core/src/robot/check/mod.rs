@@ -20,8 +20,6 @@ pub(super) use mass_matrix::check_mass_matrix;
 const LEAST_INERTIA: f64 = 1e-60;
 /// Largest entry of `R^T R - 1` of a rotation R: above the rounding of rotations in single precision.
 const NOT_RIGID: f64 = 1e-5;
-/// Most joints that move: the mass matrix is checked at a cost that grows with their cube.
-const MOST_JOINTS: usize = 1000;
 
 /// Refuses joints and links that cannot be used, and returns warnings of those that are odd.
 pub(super) fn check(description: &RobotDescription) -> Result<Vec<String>> {
@@ -31,9 +29,6 @@ pub(super) fn check(description: &RobotDescription) -> Result<Vec<String>> {
             "gravity must be three finite numbers below {LARGEST:e} m/s^2, not {:e}, {:e}, {:e}",
             gravity.x, gravity.y, gravity.z
         )));
-    }
-    if joints.len() > MOST_JOINTS {
-        return Err(Error::model(format!("{} joints move; supported: up to {MOST_JOINTS}", joints.len())));
     }
     check_unique("joint", joints.iter().map(|joint| joint.name.as_str()))?;
     check_unique("link", links.iter().map(|link| link.name.as_str()))?;
