@@ -24,7 +24,7 @@ FINDINGS = {
     "explore_a_touch.py": r"_4, 1\d\.\d N\nphysics: 201 samples(.|\n)* 0\.[0-3]\d Nm(.|\n)*within \d mm",
     "own_robot.py": r"warning: .*'elbow'(.|\n)*warning: .*'lower'(.|\n)*refused: link 'upper'",
     "surface_queries.py": r"watertight: True(.|\n)*ray 0: in .*\nray 0: out .*\n1000 samples",
-    "touch_in_simulation.py": r"felt [1-9] ms (.|\n)*iiwa_link_7, located: True\npoint error: [0-4]\.",
+    "touch_in_simulation.py": r"detected [1-9] ms (.|\n)*iiwa_link_7, located: True\npoint error: [0-4]\.",
     "touch_on_a_log.py": r"from 2\.0.*iiwa_link_7, 3[012] N.*\n.*from 4\.0.*iiwa_link_7, 3[012] N.*\n$",
 }
 
