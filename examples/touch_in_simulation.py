@@ -1,4 +1,4 @@
-"""A simulated arm is pushed while it moves; the monitor detects the contact and estimates its point and force.
+"""A simulated arm is pushed while it moves; the monitor detects the contact and estimates point and force.
 
 Requires MuJoCo: pip install '.[sim]'
 """
