@@ -14,6 +14,8 @@ EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 SNIPPET = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\((?!https?://)([^)#]+)(?:#[^)]*)?\)")
+SECTION_LINK = re.compile(r"\]\((?!https?://)([^)#]*)#([^)]+)\)")
+HEADING = re.compile(r"^#+ (.+)$", re.MULTILINE)
 OWN_LINK = re.compile(
     r"https://(?:github\.com/contactsense/contactsense/(?:blob|tree)|raw\.githubusercontent\.com/contactsense/contactsense)/main/([^)#\s]+)"
 )
@@ -75,7 +77,18 @@ def test_links_lead_somewhere(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
     missing = [link for link in LINK.findall(text) if not (page.parent / link).exists()]
     missing += [link for link in OWN_LINK.findall(text) if not (ROOT / link).exists()]
+    missing += [
+        f"{link}#{section}"
+        for link, section in SECTION_LINK.findall(text)
+        if section not in sections(page.parent / link if link else page)
+    ]
     assert missing == []
+
+
+def sections(page: Path) -> list[str]:
+    """The names by which links reach the sections of a page."""
+    headings = HEADING.findall(page.read_text(encoding="utf-8"))
+    return [re.sub(r"[^\w -]", "", heading).lower().replace(" ", "-") for heading in headings]
 
 
 def test_readme_links_work_outside_the_repository() -> None:
