@@ -1,6 +1,6 @@
-"""A simulated arm leans on a ball and explores the touch by small motions; the run is written and read back.
+"""A simulated arm explores a contact with a sphere by small motions; the recording is saved and loaded.
 
-Needs MuJoCo: pip install '.[sim]'
+Requires MuJoCo: pip install '.[sim]'
 """
 
 import tempfile
@@ -13,13 +13,15 @@ from contactsense import sim
 
 robot, model = cs.Robot.named("iiwa14"), sim.named_model("iiwa14")
 scene = sim.touch_scene(robot, model, "iiwa_link_4", kind="sphere", force_range=(15.0, 25.0), seed=3)
-print(f"a ball of {1e2 * scene.obstacle.radius:.1f} cm on {scene.link}, {np.linalg.norm(scene.force):.1f} N")
+print(
+    f"a sphere of {1e2 * scene.obstacle.radius:.1f} cm on {scene.link}, {np.linalg.norm(scene.force):.1f} N"
+)
 
-# Eight motions of up to 3 degrees a joint, planned so that the contact is kept.
+# Eight motions of up to 3 degrees per joint, planned so that the contact is maintained.
 pace = sim.Pace(motions=8, duration=0.5)
 path = sim.joint_exploration(robot, scene, amplitude=np.deg2rad(3.0), pace=pace, seed=0)
 
-# In physics: a soft arm with 5 % wrong masses, friction, and an observer; 5 % noise on its torques.
+# Physics simulation: compliant control, masses with an error of 5 %, friction, an observer, 5 % torque noise.
 contact = scene.contact(robot, friction=0.2, dissipation=1.0)
 real = sim.perturbed_model(model, mass=0.05, seed=1)
 noise = sim.TorqueError(percent=5.0, seed=2)
@@ -31,11 +33,11 @@ force = np.linalg.norm(run.force, axis=1)
 wander = 1e2 * np.ptp(run.point, axis=0).max()
 error = np.abs(run.external_torque - run.true_external_torque).mean()
 print(
-    f"physics: {len(run)} samples, {force.min():.0f} to {force.max():.0f} N, point wandered {wander:.1f} cm"
+    f"physics: {len(run)} samples, {force.min():.0f} to {force.max():.0f} N, the point moves {wander:.1f} cm"
 )
-print(f"external torque off by {error:.2f} Nm in the mean")
+print(f"mean error of the external torque: {error:.2f} Nm")
 
-# The same motions in closed form, without physics engine: for tables of thousands of trials.
+# The same motions in closed form, without a physics simulation, for studies with thousands of trials.
 plain = sim.record_quasi_static(robot, scene.contact(robot), path.time, path.q)
 apart = 1e3 * np.linalg.norm(plain.point - run.point, axis=1).max()
-print(f"closed form: points within {apart:.0f} mm of those in physics")
+print(f"closed form: points within {apart:.0f} mm of those of the physics simulation")

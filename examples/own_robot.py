@@ -1,5 +1,6 @@
-"""A robot from a URDF: what is odd is a warning, what cannot be used is an error with a name."""
+"""A robot from a URDF: unusual parts cause warnings; an unusable part causes an error that names it."""
 
+import logging
 import tempfile
 from pathlib import Path
 
@@ -25,17 +26,20 @@ URDF = """
 </robot>
 """
 
+# The warnings are printed below, so they need not be logged as well.
+logging.getLogger("contactsense").setLevel(logging.ERROR)
+
 with tempfile.TemporaryDirectory() as folder:
     path = Path(folder) / "two_links.urdf"
     path.write_text(URDF)
 
-    robot = cs.Robot.from_urdf(path)  # meshes: from the URDF's folder and `package_dirs` only
+    robot = cs.Robot.from_urdf(path)  # meshes are read only from the URDF's folder and `package_dirs`
     print(robot)
     for warning in robot.warnings:
         print(f"warning: {warning}")
 
     held = cs.Robot.from_urdf(path, locked_joints={"elbow": 0.5})
-    print(f"elbow locked: joints {held.joint_names}, links that can be touched {held.link_names}")
+    print(f"elbow locked: joints {held.joint_names}, links with a surface {held.link_names}")
 
     path.write_text(URDF.replace('radius="0.05"', 'radius="-0.05"'))
     try:

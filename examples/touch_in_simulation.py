@@ -1,6 +1,6 @@
-"""A simulated arm is pushed while it moves; the monitor says when, where and how hard.
+"""A simulated arm is pushed while it moves; the monitor detects the contact and estimates point and force.
 
-Needs MuJoCo: pip install '.[sim]'
+Requires MuJoCo: pip install '.[sim]'
 """
 
 import numpy as np
@@ -18,7 +18,7 @@ controller = sim.ComputedTorqueController(model)
 arm = sim.SimulatedRobot(model, dt=DT)
 arm.reset(motion.at(0.0).q)
 
-# 40 N at the middle of link 7's outer face, along its inward normal.
+# 40 N at the centre of the outer face of link 7, close to the inward normal.
 face = robot.surface("iiwa_link_7").closest_points([[0.0, 0.0, 1.0]])
 push = sim.Push(
     link="iiwa_link_7",
@@ -34,11 +34,11 @@ for _ in range(2500):
     arm.clear_forces()
     point, force = push.apply(arm)
     measured = arm.step(controller.torque(arm.q, arm.v, motion.at(arm.time)))
-    # The motors hold their torque between ticks, so the mean goes with q and v.
+    # The motors hold their torque between ticks, so that its mean belongs to q and v.
     report = monitor.update(measured.q, measured.v, measured.tau_mean)
     if report.onset:
-        print(f"felt {1e3 * (measured.time - push.start):.0f} ms after the push began")
-    # Judge when the torques are largest: the estimate is best then.
+        print(f"contact detected {1e3 * (measured.time - push.start):.0f} ms after its start")
+    # The estimate is most accurate when the torques are largest.
     if report.contacts and np.linalg.norm(report.external_torque) > strongest:
         strongest = float(np.linalg.norm(report.external_torque))
         answer = report.contacts[0], point, force
@@ -48,4 +48,4 @@ if answer is not None:
     print(f"link: {contact.link}, located: {contact.located}")
     error = np.linalg.norm(contact.point - point)
     print(f"point error: {1e3 * error:.2f} mm (std {1e3 * contact.point_std:.2f} mm)")
-    print(f"force: {np.linalg.norm(contact.force):.1f} N, truly {np.linalg.norm(force):.1f} N")
+    print(f"force: {np.linalg.norm(contact.force):.1f} N, true force {np.linalg.norm(force):.1f} N")

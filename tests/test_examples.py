@@ -1,4 +1,4 @@
-"""Examples and snippets of README and pages run; the table of equations names functions that exist."""
+"""The examples and the snippets of the README and the pages run; links and named functions exist."""
 
 from __future__ import annotations
 
@@ -14,14 +14,19 @@ EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 SNIPPET = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\((?!https?://)([^)#]+)(?:#[^)]*)?\)")
+SECTION_LINK = re.compile(r"\]\((?!https?://)([^)#]*)#([^)]+)\)")
+HEADING = re.compile(r"^#+ (.+)$", re.MULTILINE)
+OWN_LINK = re.compile(
+    r"https://(?:github\.com/contactsense/contactsense/(?:blob|tree)|raw\.githubusercontent\.com/contactsense/contactsense)/main/([^)#\s]+)"
+)
 FUNCTION = re.compile(r"`([\w/]+\.rs)::(\w+)`")
 
-# What each example must have found out, as a pattern of its output.
+# A pattern that the output of each example must match.
 FINDINGS = {
     "explore_a_touch.py": r"_4, 1\d\.\d N\nphysics: 201 samples(.|\n)* 0\.[0-3]\d Nm(.|\n)*within \d mm",
     "own_robot.py": r"warning: .*'elbow'(.|\n)*warning: .*'lower'(.|\n)*refused: link 'upper'",
     "surface_queries.py": r"watertight: True(.|\n)*ray 0: in .*\nray 0: out .*\n1000 samples",
-    "touch_in_simulation.py": r"felt [1-9] ms (.|\n)*iiwa_link_7, located: True\npoint error: [0-4]\.",
+    "touch_in_simulation.py": r"detected [1-9] ms (.|\n)*iiwa_link_7, located: True\npoint error: [0-4]\.",
     "touch_on_a_log.py": r"from 2\.0.*iiwa_link_7, 3[012] N.*\n.*from 4\.0.*iiwa_link_7, 3[012] N.*\n$",
 }
 
@@ -48,10 +53,12 @@ def test_example_runs(path: Path, tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_readme_snippet_finds_the_touch(tmp_path: Path) -> None:
+def test_readme_snippet_finds_the_contact(tmp_path: Path) -> None:
     (snippet,) = SNIPPET.findall(PAGES[0].read_text(encoding="utf-8"))
     printed = run("-c", snippet, folder=tmp_path)
-    assert re.search(r"^touched at 0\.50\d s\niiwa_link_6 \[0\.51\d* +0\.01\d* +0\.60\d*\]", printed), printed
+    assert re.search(
+        r"^contact detected at 0\.50\d s\niiwa_link_6 \[0\.51\d* +0\.01\d* +0\.60\d*\]", printed
+    ), printed
 
 
 @pytest.mark.parametrize(
@@ -60,17 +67,33 @@ def test_readme_snippet_finds_the_touch(tmp_path: Path) -> None:
     ids=lambda page: page.stem,
 )
 def test_page_snippets_run(page: Path, tmp_path: Path) -> None:
-    if page.stem in ("simulation", "touching"):
+    if page.stem in ("simulation", "obstacle_contacts", "particle_filter"):
         pytest.importorskip("mujoco")
     run("-c", "\n".join(SNIPPET.findall(page.read_text(encoding="utf-8"))), folder=tmp_path)
 
 
 @pytest.mark.parametrize("page", [*PAGES, ROOT / "CONTRIBUTING.md"], ids=lambda page: page.name)
 def test_links_lead_somewhere(page: Path) -> None:
-    missing = [
-        link for link in LINK.findall(page.read_text(encoding="utf-8")) if not (page.parent / link).exists()
+    text = page.read_text(encoding="utf-8")
+    missing = [link for link in LINK.findall(text) if not (page.parent / link).exists()]
+    missing += [link for link in OWN_LINK.findall(text) if not (ROOT / link).exists()]
+    missing += [
+        f"{link}#{section}"
+        for link, section in SECTION_LINK.findall(text)
+        if section not in sections(page.parent / link if link else page)
     ]
     assert missing == []
+
+
+def sections(page: Path) -> list[str]:
+    """The names by which links reach the sections of a page."""
+    headings = HEADING.findall(page.read_text(encoding="utf-8"))
+    return [re.sub(r"[^\w -]", "", heading).lower().replace(" ", "-") for heading in headings]
+
+
+def test_readme_links_work_outside_the_repository() -> None:
+    """The package index shows the README, where a relative link leads nowhere."""
+    assert LINK.findall(PAGES[0].read_text(encoding="utf-8")) == []
 
 
 def test_equations_name_functions_that_exist() -> None:
