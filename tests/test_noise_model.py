@@ -18,7 +18,8 @@ def test_values_are_kept_as_given() -> None:
     assert noise.velocity == 0.0
     assert noise.relative == 0.03
     assert isinstance(noise.model, np.ndarray)
-    noise.model[0] = 9.0  # a copy
+    with pytest.raises(ValueError, match="read-only"):
+        noise.model[0] = 9.0
     np.testing.assert_array_equal(noise.model, [0.1] * 7)
     assert noise == cs.NoiseModel(torque=0.2, model=[0.1] * 7)
     assert noise != cs.NoiseModel(torque=0.2)

@@ -1,99 +1,116 @@
-"""Writes the docstrings of the compiled core into its stub, where editors and type checkers look for them.
+"""Writes the compiled core's docstrings into its stub, where editors look for them; `--check` only compares.
 
-    python tools/stub_docs.py           writes python/contactsense/_core.pyi
-    python tools/stub_docs.py --check   says whether it is up to date
-
-A class's or function's own text stands in the stub as in the compiled module; the rest of the stub is written by
-hand.
+Names, types and defaults in the stub are written by hand; mypy's stubtest compares them with those compiled.
 """
 
 from __future__ import annotations
 
+import argparse
 import ast
 import inspect
 import sys
+import textwrap
 from pathlib import Path
 
 from contactsense import _core
 
-STUB = Path(__file__).resolve().parents[1] / "python/contactsense/_core.pyi"
-INDENT = 4
+STUB = Path(__file__).resolve().parent.parent / "python" / "contactsense" / "_core.pyi"
+INDENT = "    "
+
+Documented = ast.ClassDef | ast.FunctionDef
 
 
-def with_docstrings(source: str) -> str:
-    """The stub with the docstring of every public class, method and property."""
-    lines = source.split("\n")
-    # From the last to the first, so that line numbers stay right.
-    for node, owner in reversed(list(_nodes(ast.parse(source)))):
-        text = _docstring(owner)
-        first = node.body[0]
-        decorators = getattr(first, "decorator_list", [])
-        start = min([first.lineno, *(entry.lineno for entry in decorators)]) - 1
-        indent = " " * (node.col_offset + INDENT)
-        new = _quoted(text, indent) if text else []
-        has_old = isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant)
-        if has_old and isinstance(first.value.value, str):
-            end = first.end_lineno
-            lines[start:end] = new or [f"{indent}..."]
-        elif not new:
-            continue
-        elif lines[start].strip() == "...":
-            lines[start : start + 1] = new
-        elif lines[start].endswith(": ...") and _on_one_line(node, first):
-            lines[start : start + 1] = [lines[start].removesuffix(" ..."), *new]
-        else:
-            lines[start:start] = new
-    return "\n".join(lines)
+def written(text: str) -> str:
+    """The text of a stub, with the docstring of every class, method and function that has one."""
+    lines = text.splitlines()
+    # From the last to the first, so that line numbers before it stay.
+    for node, scope in reversed(list(documented(ast.parse(text)))):
+        place(lines, node, docstring(node, scope))
+    return "\n".join(lines) + "\n"
 
 
-def _nodes(tree: ast.Module):
-    """Public definitions with the object that each describes, in the order of the text."""
-    for node in tree.body:
+def documented(module: ast.Module) -> list[tuple[Documented, object]]:
+    """Every definition of a stub with the compiled object that holds it, in the order of the text."""
+    found: list[tuple[Documented, object]] = []
+    for node in module.body:
+        if isinstance(node, Documented):
+            found.append((node, _core))
         if isinstance(node, ast.ClassDef):
-            owner = getattr(_core, node.name)
-            yield node, owner
-            for inner in node.body:
-                if isinstance(inner, ast.FunctionDef) and not inner.name.startswith("_"):
-                    is_setter = any(
-                        isinstance(entry, ast.Attribute) and entry.attr == "setter"
-                        for entry in inner.decorator_list
-                    )
-                    if not is_setter:
-                        yield inner, owner.__dict__[inner.name]
+            holder = getattr(_core, node.name)
+            found += [(member, holder) for member in node.body if isinstance(member, ast.FunctionDef)]
+    return found
 
 
-def _on_one_line(node: ast.ClassDef | ast.FunctionDef, first: ast.stmt) -> bool:
-    """Whether the body stands behind the colon; a class's first member may end so, too."""
-    return isinstance(node, ast.FunctionDef) or first.lineno == node.lineno
+def docstring(node: Documented, scope: object) -> str | None:
+    """The compiled docstring; none of special methods, whose documentation is the class's, and of setters."""
+    if node.name.startswith("__") or any(isinstance(mark, ast.Attribute) for mark in node.decorator_list):
+        return None
+    doc = getattr(getattr(scope, node.name), "__doc__", None)
+    return inspect.cleandoc(doc) if doc else None
 
 
-def _docstring(owner: object) -> str:
-    return inspect.cleandoc(getattr(owner, "__doc__", None) or "")
+def place(lines: list[str], node: Documented, doc: str | None) -> None:
+    """Puts a docstring, or none, under the header of a definition."""
+    first = node.body[0]
+    rest = [statement for statement in node.body if not is_text(statement) and not is_ellipsis(statement)]
+    end = node.end_lineno or node.lineno
+    margin = " " * (node.col_offset + len(INDENT))
+    header = lines[node.lineno - 1 : first.lineno]
+    header[-1] = header[-1][: first.col_offset] if first.lineno == header_end(node, header) else ""
+    header = [line.rstrip() for line in header if line.strip()]
+    # What is left of a body begins with its first decorator, where it has one.
+    kept = lines[rest[0].lineno - 1 - len(getattr(rest[0], "decorator_list", [])) : end] if rest else []
+    if doc is None and not kept:
+        lines[node.lineno - 1 : end] = [*header[:-1], f"{header[-1]} ..."]
+        return
+    body = (
+        [] if doc is None else [*textwrap.indent(quoted(doc), margin).splitlines(), *([""] if kept else [])]
+    )
+    lines[node.lineno - 1 : end] = [*header, *body, *kept]
 
 
-def _quoted(text: str, indent: str) -> list[str]:
-    raw = "r" if "\\" in text else ""
-    body = [f"{indent}{line}".rstrip() for line in text.split("\n")]
-    if len(body) == 1:
-        return [f'{indent}{raw}"""{text}"""']
-    body[0] = f'{indent}{raw}"""{text.split(chr(10))[0]}'
-    return [*body, f'{indent}"""']
+def header_end(node: Documented, header: list[str]) -> int:
+    """The line that a definition's body begins on, where that is the header's last."""
+    return node.lineno + len(header) - 1
 
 
-def _lines(source: str) -> list[str]:
-    """Without blank lines, which the formatter sets."""
-    return [line for line in source.split("\n") if line.strip()]
+def quoted(doc: str) -> str:
+    """A docstring as source text."""
+    raw = "r" if "\\" in doc else ""
+    return f'{raw}"""{doc}\n"""' if "\n" in doc else f'{raw}"""{doc}"""'
+
+
+def is_text(node: ast.stmt) -> bool:
+    """Whether a statement is a docstring."""
+    return (
+        isinstance(node, ast.Expr)
+        and isinstance(node.value, ast.Constant)
+        and isinstance(node.value.value, str)
+    )
+
+
+def is_ellipsis(node: ast.stmt) -> bool:
+    """Whether a statement is `...`."""
+    return (
+        isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and node.value.value is Ellipsis
+    )
 
 
 def main() -> int:
-    source = STUB.read_text(encoding="utf-8")
-    wanted = with_docstrings(source)
-    if "--check" not in sys.argv[1:]:
-        STUB.write_text(wanted, encoding="utf-8")
-        return 0
-    if _lines(wanted) != _lines(source):
-        print(f"{STUB}: its docstrings are not those of the compiled core; run python tools/stub_docs.py")
+    """Runs the command; 1 where the stub differs."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--check", action="store_true", help="only compare; fails where the stub differs")
+    check = parser.parse_args().check
+    text = STUB.read_text(encoding="utf-8")
+    new = written(text)
+    if check and new != text:
+        print(
+            f"{STUB}: docstrings differ from the compiled ones; run python tools/stub_docs.py",
+            file=sys.stderr,
+        )
         return 1
+    if not check:
+        STUB.write_text(new, encoding="utf-8")
     return 0
 
 

@@ -1,4 +1,4 @@
-"""Types of the compiled core, with its docstrings (`tools/stub_docs.py` writes them)."""
+"""Types of the compiled core. Its docstrings are written here by tools/stub_docs.py."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from os import PathLike
@@ -33,8 +33,8 @@ __all__ = [
     "Surface",
     "SurfaceSamples",
     "__version__",
-    "_checked_urdf",
     "_restore",
+    "_checked_urdf",
     "_robot_from_urdf",
     "build_profile",
 ]
@@ -57,6 +57,9 @@ class InputError(ContactSenseError, ValueError):
     The object's state is as it was before the call. Also raised where another thread is using the object.
     """
 
+def _restore(kind: str, version: str, content: Any) -> Any:
+    """Restores what `pickle` or `copy` has taken apart."""
+
 def _checked_urdf(
     path: str | PathLike[str],
     package_dirs: Sequence[str | PathLike[str]],
@@ -64,7 +67,6 @@ def _checked_urdf(
     geometry: str,
     missing_meshes: str,
 ) -> tuple[str, list[tuple[str, int, tuple[Any, tuple[Any, ...]]]], list[str]]: ...
-def _restore(class_: str, state: bytes) -> Any: ...
 def _robot_from_urdf(
     path: str | PathLike[str],
     package_dirs: Sequence[str | PathLike[str]] = ...,
@@ -291,168 +293,205 @@ class Robot:
 
 @final
 class Surface:
-    """The surface of one link, in the link frame.
+    """One link's surface, in the link frame.
 
-    `Robot.surface` gives it.
+    `Robot.surface` gives it. Frozen, shareable between threads; can be pickled and copied where its robot can.
 
     Example:
         >>> import contactsense as cs
-        >>> surface = cs.Robot.named("iiwa14").surface("iiwa_link_3")
-        >>> surface.closest_points([[0.0, 0.0, 1.0]]).points.shape
-        (1, 3)
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> surface = robot.surface(robot.link_names[-1])
+        >>> samples = surface.sample(100)
+        >>> bool((surface.closest_points(samples.points).distances < 1e-9).all())
+        True
     """
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property
     def vertices(self) -> NDArray[np.float64]:
-        """Vertices, `(n, 3)`, link frame [m]; of exact primitives a tessellation, for display."""
+        """Vertices, `(n, 3)`, link frame [m]; of exact primitives a tessellation, for display; read-only."""
     @property
     def triangles(self) -> NDArray[np.int64]:
-        """Vertex indices, `(m, 3)`, counter-clockwise seen from outside."""
+        """Vertex indices, `(m, 3)`, counter-clockwise seen from outside; read-only."""
     @property
     def area(self) -> float:
-        """Sum of the areas of the parts [m^2]; where parts overlap, both count."""
+        """Sum of the parts' areas [m^2]; where parts overlap, both count."""
     @property
     def watertight(self) -> bool:
         """Whether every part is closed."""
     def closest_points(self, points: ArrayLike) -> ClosestPoints:
-        """The nearest surface point of each query, over all parts of the link.
+        """The nearest surface point of each query: the minimum over the link's parts.
 
         Args:
-            points: `(n, 3)`, link frame [m].
+            points: Queries, `(n, 3)`, or one `(3,)`, link frame [m].
 
         Returns:
-            `ClosestPoints`; distances are unsigned.
+            One row a query; distances are unsigned.
 
         Raises:
-            InputError: the argument cannot be used.
-            MemoryError: the answer does not fit into memory.
+            InputError: Names the argument.
+            MemoryError: The answer does not fit into memory.
         """
     def cast_rays(self, origins: ArrayLike, directions: ArrayLike) -> RayHits:
-        """All hits of each ray, sorted by distance per ray.
+        """Every intersection of each ray, sorted by distance per ray.
 
-        It is watertight: a closed mesh is entered as often as left. Hits inside another closed part of the link are left out.
+        Watertight: a closed mesh is entered as often as left. Intersections inside another closed part of the link are
+        left out.
 
         Args:
-            origins: `(n, 3)`, link frame [m].
-            directions: `(n, 3)`, link frame; they need not be unit vectors.
+            origins: Where the rays begin, `(n, 3)`, or one `(3,)`, link frame [m].
+            directions: Of the rays, as many, link frame; they need not be unit vectors.
 
         Returns:
-            `RayHits`; distances are in metres.
+            One row an intersection; distances are in metres.
 
         Raises:
-            InputError: an argument cannot be used; names it.
-            MemoryError: the answer does not fit into memory.
+            InputError: Names the argument.
+            MemoryError: The answer does not fit into memory.
         """
     def sample(self, n: int, seed: int = 0) -> SurfaceSamples:
-        """Random points, uniform by area over the exposed surface.
+        """Draws random points, uniform by area over the exposed surface; the same for the same seed.
 
         Args:
-            n: number of points. A larger number appends to the same points.
-            seed: the same seed gives the same points.
+            n: How many; a larger number appends to the same points.
+            seed: A whole number.
 
         Returns:
-            `SurfaceSamples`.
+            One row a point, link frame.
 
         Raises:
-            InputError: an argument cannot be used; names it.
-            MemoryError: the points do not fit into memory.
+            InputError: Names the argument.
+            MemoryError: The points do not fit into memory.
         """
 
 @final
 class ClosestPoints:
-    """Nearest points of a surface, one row per query."""
-    def __new__(
-        cls,
-        points: NDArray[np.float64],
-        normals: NDArray[np.float64],
-        distances: NDArray[np.float64],
-        triangles: NDArray[np.int64],
-    ) -> Self: ...
-    def __len__(self) -> int: ...
+    """Nearest points, one row a query; all arrays are read-only.
+
+    Frozen; can be pickled and copied.
+
+    Example:
+        >>> import contactsense as cs
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> surface = robot.surface(robot.link_names[-1])
+        >>> surface.closest_points([[0.0, 0.0, 1.0], [0.0, 0.0, 2.0]]).points.shape
+        (2, 3)
+    """
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property
     def points(self) -> NDArray[np.float64]:
-        """Points, `(n, 3)`, link frame [m]."""
+        """Nearest point of each query, `(n, 3)`, link frame [m]."""
     @property
     def normals(self) -> NDArray[np.float64]:
-        """Outward normals, `(n, 3)`, link frame."""
+        """Outward unit normals there, `(n, 3)`, link frame."""
     @property
     def distances(self) -> NDArray[np.float64]:
-        """Distances, `(n,)`, unsigned [m]."""
+        """Unsigned distances, `(n,)` [m]."""
     @property
     def triangles(self) -> NDArray[np.int64]:
-        """Triangles, `(n,)`: rows of `Surface.triangles`; -1 on an exact primitive."""
+        """Rows of `Surface.triangles`, `(n,)`; -1 on an exact primitive."""
 
 @final
 class RayHits:
-    """All hits of a batch of rays, sorted by distance per ray."""
-    def __new__(
-        cls,
-        ray: NDArray[np.int64],
-        distance: NDArray[np.float64],
-        point: NDArray[np.float64],
-        normal: NDArray[np.float64],
-        triangle: NDArray[np.int64],
-    ) -> Self: ...
-    def __len__(self) -> int: ...
+    """Every intersection of a batch of rays, sorted per ray; all arrays are read-only.
+
+    Frozen; can be pickled and copied.
+
+    Example:
+        >>> import contactsense as cs
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> surface = robot.surface(robot.link_names[-1])
+        >>> hits = surface.cast_rays([[0.0, 0.0, 1.0]], [[0.0, 0.0, -1.0]])
+        >>> len(hits.ray) % 2
+        0
+    """
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property
     def ray(self) -> NDArray[np.int64]:
-        """Rays, `(k,)`: rows of the query."""
+        """Row of the query, `(k,)`."""
     @property
     def distance(self) -> NDArray[np.float64]:
-        """Distances from the origin, `(k,)` [m]."""
+        """Distance from the ray's origin, `(k,)` [m]."""
     @property
     def point(self) -> NDArray[np.float64]:
-        """Points, `(k, 3)`, link frame [m]."""
+        """Point of intersection, `(k, 3)`, link frame [m]."""
     @property
     def normal(self) -> NDArray[np.float64]:
-        """Outward normals, `(k, 3)`, link frame."""
+        """Outward unit normal there, `(k, 3)`, link frame."""
     @property
     def triangle(self) -> NDArray[np.int64]:
-        """Triangles, `(k,)`: rows of `Surface.triangles`; -1 on an exact primitive."""
+        """Row of `Surface.triangles`, `(k,)`; -1 on an exact primitive."""
 
 @final
 class SurfaceSamples:
-    """Random points of a surface."""
-    def __new__(
-        cls,
-        points: NDArray[np.float64],
-        normals: NDArray[np.float64],
-        triangles: NDArray[np.int64],
-    ) -> Self: ...
-    def __len__(self) -> int: ...
+    """Random points of a surface; all arrays are read-only.
+
+    Frozen; can be pickled and copied.
+
+    Example:
+        >>> import contactsense as cs
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> surface = robot.surface(robot.link_names[-1])
+        >>> surface.sample(100, seed=1).points.shape
+        (100, 3)
+    """
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property
     def points(self) -> NDArray[np.float64]:
         """Points, `(n, 3)`, link frame [m]."""
     @property
     def normals(self) -> NDArray[np.float64]:
-        """Outward normals, `(n, 3)`, link frame."""
+        """Outward unit normals there, `(n, 3)`, link frame."""
     @property
     def triangles(self) -> NDArray[np.int64]:
-        """Triangles, `(n,)`: rows of `Surface.triangles`; -1 on an exact primitive."""
+        """Rows of `Surface.triangles`, `(n,)`; -1 on an exact primitive."""
 
 @final
 class MomentumObserver:
     """The generalised momentum observer (Vorndamme 2017, eqs. 4-6) with its acceleration (eq. 9).
 
-    It estimates the external torque from positions, velocities and motor torques. Each component is the true one behind
-    a first-order low-pass with time constant `1 / gain`, for any `gain * dt`.
+    Estimates the external torque from positions, velocities and motor torques; each component is the true one behind a
+    first-order low-pass with time constant `1 / gain`. Stable for any `gain * dt`. One thread at a time may use it.
 
     Args:
-        robot: the robot that is observed.
-        dt: time between two calls [s].
-        gain: scalar or `(nv,)` [1/s].
+        robot: The robot.
+        dt: Time between two calls [s].
+        gain: Scalar or `(nv,)` [1/s].
 
     Raises:
-        InputError: an argument cannot be used; names it.
+        InputError: Names the argument.
 
     Example:
-        >>> import contactsense as cs
+        >>> import contactsense as cs, numpy as np
         >>> robot = cs.Robot.named("iiwa14")
+        >>> q, v = np.full(7, 0.4), np.zeros(7)
+        >>> tau = robot.inverse_dynamics(q, v, v)
+        >>> tau[1] -= 2.0
         >>> observer = cs.MomentumObserver(robot, dt=1e-3)
-        >>> q, v = robot.neutral(), robot.velocity({})
-        >>> observer.update(q, v, robot.inverse_dynamics(q, v, v)).shape
-        (7,)
+        >>> for _ in range(500):
+        ...     external_torque = observer.update(q, v, tau)
+        >>> round(float(external_torque[1]), 6)
+        2.0
     """
+
     def __new__(cls, robot: Robot, *, dt: float, gain: ArrayLike = 50.0) -> Self: ...
+    @property
+    def robot(self) -> Robot:
+        """The robot."""
+    @property
+    def dt(self) -> float:
+        """Time between two calls that is assumed where `update` is given none [s]."""
+    @property
+    def gain(self) -> NDArray[np.float64]:
+        """The gain, `(nv,)` [1/s]; a read-only copy.
+
+        A scalar or `(nv,)` may be set; the external torque goes on from where it is.
+        """
+    @gain.setter
+    def gain(self, value: ArrayLike) -> None: ...
     def update(
         self,
         q: ArrayLike,
@@ -462,61 +501,61 @@ class MomentumObserver:
         dt: float | None = None,
         friction: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
-        """One tick. The first call sets the initial momentum and returns zeros.
+        """Takes in one tick. The first call sets the initial momentum and returns zeros.
 
         Args:
-            q: configuration, `(nq,)`.
-            v: velocity, `(nv,)` [rad/s, m/s], measured at the same instant.
-            tau: motor torque, `(nv,)`, or `(nv - 6,)` for a floating base [Nm, N]; of a torque that is held over the steps
-                before and after, their mean.
-            dt: length of this step [s], where it differs from the constructor's.
-            friction: torque of friction, shaped as `tau`, which is subtracted from it [Nm, N].
+            q: Configuration, `(nq,)`.
+            v: Velocity, `(nv,)` [rad/s; m/s for sliding joints], measured when `q` was.
+            tau: Motor torque, `(nv,)`, or `(nv - 6,)` for a floating base [Nm; N for sliding joints]: at that instant, or
+                better the mean of the torques held before and after it.
+            dt: Time since the last call [s]; None for the constructor's.
+            friction: Torque of friction, shaped as `tau` [Nm, N], which is subtracted from it; None for no friction.
 
         Returns:
-            The external torque, `(nv,)` [Nm, N].
+            The external torque, `(nv,)` [Nm; N for sliding joints and a base's linear part]; read-only.
 
         Raises:
-            InputError: an argument cannot be used; names it. The state is then unchanged.
+            InputError: Names the argument; the state is then unchanged.
         """
     def reset(self) -> None:
         """Forgets all ticks; the next call is a first call."""
     @property
     def external_torque(self) -> NDArray[np.float64]:
-        """The external torque of the last tick, `(nv,)` [Nm, N]."""
+        """External torque of the last tick, `(nv,)` [Nm; N for sliding joints]; a read-only copy."""
     @property
     def acceleration(self) -> NDArray[np.float64]:
-        """The acceleration estimated at the last tick, `(nv,)` [rad/s^2, m/s^2]: forward dynamics with the external torque."""
-    @property
-    def robot(self) -> Robot:
-        """The robot observed."""
-    @property
-    def dt(self) -> float:
-        """Time between two calls that is assumed where `update` is given none [s]."""
-    @property
-    def gain(self) -> NDArray[np.float64]:
-        """The gain, `(nv,)` [1/s]."""
+        """Acceleration estimated at the last tick, `(nv,)` [rad/s^2; m/s^2 for sliding joints]; a read-only copy.
+
+        Forward dynamics with the external torque (Vorndamme 2017, eq. 9).
+        """
 
 @final
 class ForceTorqueSensor:
     """A six-axis force/torque sensor where `link` joins its parent: `link` and all behind it load the sensor.
 
-    A reading is (force, moment) about the origin of the sensor frame, in its axes [N, Nm].
+    A reading is (force, moment) about the sensor frame's origin, in its axes [N, Nm]. Frozen; equal where all arguments
+    are; can be pickled and copied.
 
     Args:
-        name: its name, as results report it.
-        link: name of the link that it joins to the link's parent.
-        pose: the sensor frame in the link's, `(4, 4)`; the link frame itself by default.
-        convention: "load", what the distal side exerts on the sensor (a free hand at rest: its weight), or "support", the
+        name: Its name, unique among a robot's sensors.
+        link: Name of the link that it joins to the link's parent.
+        pose: The sensor frame in the link's, `(4, 4)` [m]; None for the link frame itself.
+        convention: "load": what the distal side exerts on the sensor (a free hand at rest: its weight); "support": the
             opposite.
 
     Raises:
-        InputError: an argument cannot be used; names it.
+        InputError: Names the argument.
 
     Example:
         >>> import contactsense as cs
-        >>> cs.ForceTorqueSensor("wrist", "iiwa_link_7").convention
-        'load'
+        >>> sensor = cs.ForceTorqueSensor("wrist", "link_7", convention="support")
+        >>> sensor
+        ForceTorqueSensor('wrist', 'link_7', convention='support')
+        >>> sensor.pose.shape
+        (4, 4)
     """
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     def __new__(
         cls,
         name: str,
@@ -527,78 +566,86 @@ class ForceTorqueSensor:
     ) -> Self: ...
     @property
     def name(self) -> str:
-        """Its name."""
+        """Name of the sensor."""
     @property
     def link(self) -> str:
         """Name of the link that it joins to the link's parent."""
     @property
     def pose(self) -> NDArray[np.float64]:
-        """The sensor frame in the link's, `(4, 4)`; a copy."""
+        """The sensor frame in the link's, `(4, 4)` [m]; a read-only copy."""
     @property
     def convention(self) -> Literal["load", "support"]:
-        """ "load" or "support"."""
+        """What a reading means: "load" or "support"."""
     def __hash__(self) -> int: ...
 
 @final
 class LoadCompensator:
     """Frees the readings of force/torque sensors of the weight and inertia behind them (Vorndamme 2017, eqs. 13-19).
 
-    One pass serves all sensors, also several in a chain and those at fixed joints.
+    One pass for all sensors, also for several in a chain and at fixed joints. One thread at a time may use it.
 
     Args:
-        robot: the robot that carries the sensors.
-        sensors: the sensors, in the order of the readings; names and links are unique.
+        robot: The robot.
+        sensors: Of `ForceTorqueSensor`; names and links are unique.
 
     Raises:
-        InputError: a sensor cannot be used; names it.
+        InputError: Names the argument.
 
     Example:
-        >>> import contactsense as cs
+        >>> import contactsense as cs, numpy as np
         >>> robot = cs.Robot.named("iiwa14")
-        >>> compensator = cs.LoadCompensator(robot, [cs.ForceTorqueSensor("wrist", "iiwa_link_7")])
-        >>> q, v = robot.neutral(), robot.velocity({})
-        >>> compensator.update(q, v, v, [[0.0, 0.0, -3.0, 0.0, 0.0, 0.0]]).shape
+        >>> compensator = cs.LoadCompensator(robot, [cs.ForceTorqueSensor("wrist", robot.link_names[-1])])
+        >>> compensator.update(np.zeros(7), np.zeros(7), np.zeros(7), np.zeros((1, 6))).shape
         (1, 6)
     """
+
     def __new__(cls, robot: Robot, sensors: Iterable[ForceTorqueSensor]) -> Self: ...
+    @property
+    def robot(self) -> Robot:
+        """The robot."""
+    @property
+    def sensors(self) -> tuple[ForceTorqueSensor, ...]:
+        """The sensors, of `ForceTorqueSensor`, in the order of the wrenches."""
     def update(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, wrenches: ArrayLike) -> NDArray[np.float64]:
-        """The external wrench that each sensor measures.
+        """The external wrench that each sensor sees.
 
         Args:
-            q: configuration, `(nq,)`.
-            v: velocity, `(nv,)` [rad/s, m/s].
-            a: acceleration, `(nv,)` [rad/s^2, m/s^2].
-            wrenches: the readings, `(n_sensors, 6)`, sensor axes [N, Nm]. A NaN in a reading leaves its sensor out.
+            q: Configuration, `(nq,)`.
+            v: Velocity, `(nv,)` [rad/s; m/s for sliding joints].
+            a: Acceleration, `(nv,)` [rad/s^2; m/s^2 for sliding joints].
+            wrenches: The readings, `(n_sensors, 6)` [N, Nm], sensor axes. A NaN in a row leaves its sensor out: its row of
+                the answer is NaN, the others hold.
 
         Returns:
-            `(n_sensors, 6)` [N, Nm]: force and moment on the robot at the sensor's origin, world axes; NaN for a sensor that
-            is left out.
+            `(n_sensors, 6)` [N, Nm]: (force, moment) on the robot at each sensor's origin, world axes; read-only.
 
         Raises:
-            InputError: an argument cannot be used; names it.
+            InputError: Names the argument.
         """
 
 @final
 class NoiseModel:
     """Errors of the external torque of the untouched robot, each as one standard deviation.
 
-    What says how large errors are takes it as `noise`.
+    What says how large errors are takes it as `noise`. Frozen; equal where all numbers are; can be pickled and copied.
 
     Args:
-        torque: white noise of the torque, per sample, scalar or `(nv,)` [Nm; N for sliding joints].
-        velocity: white noise of the velocity, per sample, scalar or `(nv,)` [rad/s; m/s for sliding joints]. It acts
-            through the gain of an observer and the mass matrix; what is given an external torque leaves it out.
-        relative: share of the contact's own torque, scalar or `(nv,)`; a tenth of it also of the largest one.
-        model: slow errors left over (bias, friction, masses), scalar or `(nv,)` [Nm; N for sliding joints].
+        torque: White noise of the torque, per sample, scalar or `(nv,)` [Nm; N for sliding joints].
+        velocity: White noise of the velocity, scalar or `(nv,)` [rad/s; m/s for sliding joints]. It acts through the gain
+            of an observer and the mass matrix; what is given an external torque leaves it out.
+        relative: Share of the contact's own torque, scalar or `(nv,)`; a tenth of it also of the largest torque.
+        model: Slow errors left over (bias, friction, masses), scalar or `(nv,)` [Nm; N for sliding joints].
 
     Raises:
-        InputError: an argument is negative, not finite, or of a wrong shape; names it.
+        InputError: Names the argument.
 
     Example:
         >>> import contactsense as cs
-        >>> cs.NoiseModel(torque=0.1).torque
-        0.1
+        >>> cs.NoiseModel(model=0.2)
+        NoiseModel(torque=0.05, velocity=0.0, relative=0.03, model=0.2)
     """
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     def __new__(
         cls,
         *,
@@ -609,55 +656,63 @@ class NoiseModel:
     ) -> Self: ...
     @property
     def torque(self) -> float | NDArray[np.float64]:
-        """White noise of the torque [Nm; N for sliding joints]: a number, or `(nv,)`, a copy."""
+        """White noise of the torque [Nm; N for sliding joints]: a number or `(nv,)`; a read-only copy."""
     @property
     def velocity(self) -> float | NDArray[np.float64]:
-        """White noise of the velocity [rad/s, m/s]: a number, or `(nv,)`, a copy."""
+        """White noise of the velocity [rad/s, m/s]: a number or `(nv,)`; a read-only copy."""
     @property
     def relative(self) -> float | NDArray[np.float64]:
-        """Share of the contact's own torque: a number, or `(nv,)`, a copy."""
+        """Share of the contact's own torque: a number or `(nv,)`; a read-only copy."""
     @property
     def model(self) -> float | NDArray[np.float64]:
-        """Slow errors left over [Nm; N for sliding joints]: a number, or `(nv,)`, a copy."""
+        """Slow errors left over [Nm; N for sliding joints]: a number or `(nv,)`; a read-only copy."""
 
 @final
 class ContactIsolator:
-    """Finds the contacts that explain an external torque and the wrenches of sensors: links, points and forces.
+    """Finds the contacts that explain an external torque and the wrenches that sensors see: links, points and forces.
 
-    One contact is isolated by Vorndamme 2017, eqs. 22-26; several with sensors by eq. 27, without by eqs. 28-31. Where
-    torques do not determine two wrenches, it is used that the force of a contact has no moment, acts on the surface and
-    pushes; several solutions are candidates.
+    One contact by Vorndamme 2017, eqs. 22-26; several with sensors by eq. 27, without by eqs. 28-31. Where torques leave
+    parts of two wrenches open, it is used that a contact's force has no moment, acts on the surface and pushes; several
+    solutions are candidates. One thread at a time may use it.
 
     Args:
-        robot: the robot.
-        sensors: `ForceTorqueSensor`s, in the order of the wrenches.
-        torque_threshold: scalar or `(nv,)` [Nm, N]. A joint takes part in a contact above it, and a third of it is the
-            standard deviation of the torques' errors. With `noise` the default is three standard deviations at rest.
-        wrench_threshold: the same for wrenches: scalar, `(6,)` or `(n_sensors, 6)` [N, Nm].
-        wanted_contacts: names of sensors whose contacts are meant and not reported (Vorndamme 2017, eq. 20).
-        max_contacts: number of contacts that are reported at most.
-        pushing: whether forces push on the surface. If not, the point cannot be determined, and `located` is False.
-        noise: a `NoiseModel` of the external torque, in place of the third of a threshold.
-        locate_within: a contact is located if 90 % of the places that explain the torques are within this distance of its
-            point [m].
+        robot: The robot.
+        sensors: Of `ForceTorqueSensor`, in the order of the wrenches.
+        torque_threshold: Scalar or `(nv,)` [Nm; N for sliding joints]. A joint feels a contact above it, and a third of
+            it is the standard deviation of a torque. With `noise` the default is three standard deviations at rest.
+        wrench_threshold: On external wrenches: scalar, `(6,)` or `(n_sensors, 6)` [N, Nm].
+        wanted_contacts: Names of sensors whose contacts are meant and not reported (eq. 20).
+        max_contacts: Contacts reported at most.
+        pushing: Whether forces push on the surface. If False the point cannot be determined: `located` is False.
+        noise: A `NoiseModel` of the torques, in place of what the thresholds say.
+        locate_within: A contact is located if 90 % of the places that explain the torques are within this distance of
+            its point [m].
 
     Raises:
-        InputError: an argument cannot be used; names it.
+        InputError: Names the argument.
 
     Example:
-        >>> import contactsense as cs
+        >>> import contactsense as cs, numpy as np
         >>> robot = cs.Robot.named("iiwa14")
-        >>> isolator = cs.ContactIsolator(robot)
-        >>> isolator.isolate(robot.neutral(), robot.torque({})).contacts
-        ()
+        >>> q = np.full(7, 0.4)
+        >>> link = robot.link_names[-1]
+        >>> sample = robot.surface(link).sample(1, seed=2)
+        >>> pose = robot.link_pose(q, link)
+        >>> point = pose[:3, :3] @ sample.points[0] + pose[:3, 3]
+        >>> force = -20.0 * pose[:3, :3] @ sample.normals[0]
+        >>> tau_ext = robot.jacobian(q, link, point)[:3].T @ force
+        >>> contact = cs.ContactIsolator(robot).isolate(q, tau_ext).contacts[0]
+        >>> bool(np.allclose(contact.point, point, atol=1e-6)), bool(np.allclose(contact.force, force, atol=1e-6))
+        (True, True)
     """
+
     def __new__(
         cls,
         robot: Robot,
         *,
         sensors: Iterable[ForceTorqueSensor] = (),
-        torque_threshold: ArrayLike = 1e-3,
-        wrench_threshold: ArrayLike = 1e-3,
+        torque_threshold: ArrayLike = 0.001,
+        wrench_threshold: ArrayLike = 0.001,
         wanted_contacts: Iterable[str] = (),
         max_contacts: int = 5,
         pushing: bool = True,
@@ -666,80 +721,124 @@ class ContactIsolator:
     ) -> Self: ...
     @property
     def robot(self) -> Robot:
-        """The robot whose contacts are isolated."""
+        """The robot."""
+    @property
+    def sensors(self) -> tuple[ForceTorqueSensor, ...]:
+        """The sensors, of `ForceTorqueSensor`, in the order of the wrenches."""
+    @property
+    def torque_threshold(self) -> NDArray[np.float64]:
+        """Thresholds on the torques, `(nv,)` [Nm; N for sliding joints]; a read-only copy."""
+    @property
+    def wrench_threshold(self) -> NDArray[np.float64]:
+        """Thresholds on the external wrenches, `(n_sensors, 6)` [N, Nm]; a read-only copy."""
     def isolate(self, q: ArrayLike, tau_ext: ArrayLike, wrenches: ArrayLike | None = None) -> Isolation:
-        """The contacts that explain an external torque.
+        """Finds the contacts that explain an external torque.
 
         Args:
-            q: configuration, `(nq,)`.
-            tau_ext: external torque, `(nv,)` [Nm, N].
-            wrenches: the external wrench that each sensor measures, `(n_sensors, 6)` [N, Nm], as `LoadCompensator` gives it: force
-                and moment at the sensor's origin, world axes. A NaN in a row leaves its sensor out.
+            q: Configuration, `(nq,)`.
+            tau_ext: External torque, `(nv,)` [Nm; N for sliding joints and a base's linear part].
+            wrenches: The external wrench that each sensor sees, `(n_sensors, 6)` [N, Nm], as `LoadCompensator` gives it:
+                (force, moment) at the sensor's origin, world axes. A NaN in a row leaves its sensor out. Needed where
+                there are sensors.
 
         Returns:
-            An `Isolation`.
+            The contacts of this instant.
 
         Raises:
-            InputError: an argument cannot be used; names it.
+            InputError: Names the argument.
         """
 
 @final
 class Isolation:
-    """All contacts of one instant."""
+    """All contacts of one instant.
+
+    Frozen; can be pickled and copied.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> isolation = cs.ContactIsolator(robot).isolate(np.full(7, 0.4), [1.0, 2.0, 0.5, 0.0, 0.0, 0.0, 0.0])
+        >>> len(isolation.contacts), isolation.rank_deficit
+        (1, 3)
+    """
+
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, strings, lists in place of arrays and tuples, and dicts in place of contacts.
+        """
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property
     def contacts(self) -> tuple[Contact, ...]:
-        """The contacts, farthest from the base first."""
+        """The contacts, farthest from the base first; the same tuple at every access."""
     @property
     def rank_deficit(self) -> int:
-        """Number of components of the contacts' wrenches that the torques do not determine (Vorndamme 2017, eq. 31)."""
+        """Components of the contacts' wrenches that the torques leave open (Vorndamme 2017, eq. 31)."""
     @property
     def residual(self) -> float:
         """Norm of the external torque that the contacts do not explain [Nm, N]."""
     @property
     def link_candidates(self) -> tuple[str, ...]:
-        """Links that may carry a contact, likeliest first."""
+        """Names of the links that may carry a contact, likeliest first."""
     @property
     def truncated(self) -> bool:
-        """Whether the answer is cut short.
+        """Whether something was left out.
 
-        There were more contacts than `max_contacts`, more hits of a line than are kept (the nearest are), or more
-        explanations to try than the bounded work of a call allows.
+        There were more contacts than `max_contacts`, more intersections of a line than are kept (the nearest are), or
+        more explanations to try than the bounded work of a call allows.
         """
-    def to_dict(self) -> dict[str, Any]:
-        """As plain Python data: numbers, strings, lists and dicts, `None` for what is undetermined."""
 
 @final
 class Contact:
-    """One contact.
+    """One contact; vectors that the data do not determine are NaN.
 
-    Vectors that the data do not determine are NaN.
+    Frozen; can be pickled and copied.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> tau_ext = [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0]
+        >>> contact = cs.ContactIsolator(robot).isolate(np.full(7, 0.4), tau_ext).contacts[0]
+        >>> contact.source
+        'joint torques'
+        >>> contact.wrench.shape
+        (6,)
     """
+
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, strings, lists in place of arrays and tuples, and dicts in place of candidates.
+        """
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property
     def link(self) -> str:
-        """The contact link's name."""
+        """Name of the link that is touched."""
     @property
     def point(self) -> NDArray[np.float64]:
-        """The contact point, `(3,)`, world frame [m]."""
+        """Point of contact, `(3,)`, world frame [m]; read-only."""
     @property
     def point_local(self) -> NDArray[np.float64]:
-        """The contact point, `(3,)`, link frame [m]."""
+        """Point of contact, `(3,)`, link frame [m]; read-only."""
     @property
     def force(self) -> NDArray[np.float64]:
-        """Force on the robot, `(3,)`, world frame [N]."""
+        """Force on the robot, `(3,)`, world frame [N]; read-only."""
     @property
     def normal(self) -> NDArray[np.float64]:
-        """Outward surface normal at the point, `(3,)`, world frame."""
+        """Outward unit normal of the surface at the point, `(3,)`, world frame; read-only."""
     @property
     def wrench(self) -> NDArray[np.float64]:
-        """Force and moment on the robot at the link's origin, `(6,)`, world axes [N, Nm]."""
+        """Force and moment on the robot at the link's origin, `(6,)`, world axes [N, Nm]; read-only."""
     @property
     def source(self) -> str:
-        """What detected it: "joint torques", or the sensor's name."""
+        """What saw it: "joint torques", or the name of a sensor."""
     @property
     def located(self) -> bool:
         """Whether 90 % of the places that explain the torques lie within `locate_within` of the point.
 
-        If not, the link may be known, but the point is not.
+        If not, the link may be known, the point is not.
         """
     @property
     def point_std(self) -> float:
@@ -758,71 +857,95 @@ class Contact:
         """
     @property
     def candidates(self) -> tuple[Candidate, ...]:
-        """Places where the contact may be, best first.
+        """Where it may be, best first.
 
-        They are all places where the line of action meets a surface, points on other links that explain the torques about
-        as well, or the points of several solutions.
+        Every intersection of the line of action with a surface, points on other links that explain the torques about as
+        well, or the points of several solutions. The same tuple at every access.
         """
-    def to_dict(self) -> dict[str, Any]:
-        """As plain Python data: numbers, strings, lists and dicts, `None` for what is undetermined."""
 
 @final
 class Candidate:
-    """A place where the line of action of a force meets a surface."""
+    """A place where the line of action meets a surface.
+
+    Frozen; can be pickled and copied.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> tau_ext = [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0]
+        >>> contact = cs.ContactIsolator(robot).isolate(np.full(7, 0.4), tau_ext).contacts[0]
+        >>> all(candidate.point.shape == (3,) for candidate in contact.candidates)
+        True
+    """
+
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, strings, and lists in place of arrays.
+        """
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property
     def link(self) -> str:
-        """The link's name."""
+        """Name of the link."""
     @property
     def point(self) -> NDArray[np.float64]:
-        """The place, `(3,)`, world frame [m]."""
+        """Where the line meets the surface, `(3,)`, world frame [m]; read-only."""
     @property
     def normal(self) -> NDArray[np.float64]:
-        """Outward surface normal, `(3,)`, world frame."""
+        """Outward unit normal of the surface, `(3,)`, world frame; read-only."""
     @property
     def pushing(self) -> bool:
         """Whether the force enters the surface here."""
-    def to_dict(self) -> dict[str, Any]:
-        """As plain Python data: numbers, strings and lists."""
 
 @final
 class ContactMonitor:
-    """Detects, locates and measures the contacts of one robot, called once a control tick.
+    """The sense of touch of one robot, called once a control tick: observer, compensation, bias, detection, isolation.
 
-    It joins the momentum observer, the compensation of sensors, the tracking of the bias, detection and isolation.
+    The pipeline of Vorndamme 2017 on one pass over the robot's kinematics. One thread at a time may use it.
 
     Args:
-        robot: the robot.
-        dt: time between two calls [s].
-        sensors: `ForceTorqueSensor`s, in the order of the readings.
-        wanted_contacts: names of sensors whose contacts are meant (feet, hands): a contact behind them is no collision.
-        observer_gain: gain of the momentum observer, scalar or `(nv,)` [1/s].
-        torque_threshold: threshold on the external torque, scalar or `(nv,)` [Nm, N].
-        wrench_threshold: threshold on the sensors' external wrenches: scalar, `(6,)` or `(n_sensors, 6)` [N, Nm].
-        wrench_gain: gain of the low-pass on external wrenches [1/s], infinite for none. By default the smallest of
-            `observer_gain`, and none where that is at least `0.5 / dt`.
-        bias_time_constant: time constant of the tracking of the external torque that model errors cause without contact
-            [s]; no tracking by default. Nothing is detected in the first time constant, and a contact that lasts less than
-            half of it is not learnt.
-        bias_limit: greatest bias of each joint, in thresholds.
-        bias_settle_time: an external torque that stands still for so long becomes the bias [s]; never by default.
-        hysteresis: share of its greatest torque in a contact that a joint's gear or sensor may keep after it, scalar or
-            `(nv,)`. Such a remainder becomes the bias, up to two thresholds.
-        hold_time: a signal stays on for so long after it was last over its threshold [s].
-        max_contacts: number of contacts that are reported at most.
-        pushing: whether forces push on the surface, as in `ContactIsolator`.
-        locate_within: distance within which a contact counts as located [m], as in `ContactIsolator`.
+        robot: The robot.
+        dt: Time between two calls [s].
+        sensors: Of `ForceTorqueSensor`, in the order of the readings.
+        wanted_contacts: Names of the sensors whose contacts are meant (feet, hands): what touches behind them is no
+            collision (eq. 20).
+        observer_gain: Of the momentum observer, scalar or `(nv,)` [1/s].
+        torque_threshold: Scalar or `(nv,)` [Nm; N for sliding joints].
+        wrench_threshold: On external wrenches: scalar, `(6,)` or `(n_sensors, 6)` [N, Nm].
+        wrench_gain: Of the low-pass on external wrenches, whose readings and velocities are noisy [1/s]; infinite for
+            none. None: the smallest of `observer_gain`, and no low-pass where that is at least `0.5 / dt`.
+        bias_time_constant: Tracks the torque that errors of the model cause while nothing touches [s]; None for no
+            tracking. Nothing is detected in the first time constant, and what touches in less than half of it is not
+            learnt.
+        bias_limit: Greatest bias of each joint, in thresholds.
+        bias_settle_time: A torque that stands still for so long becomes the bias [s]; None: a contact may last for ever.
+        hysteresis: Share of its greatest torque in a contact that a joint's gear or sensor may keep after it, scalar or
+            `(nv,)`; such a remainder becomes the bias up to two thresholds.
+        hold_time: A signal stays on so long after it was last over its threshold [s].
+        max_contacts: Contacts reported at most.
+        pushing: Whether forces push on the surface. If False the point of a contact cannot be determined.
+        locate_within: A contact is located if 90 % of the places that explain the torques are within this distance of
+            its point [m].
 
     Raises:
-        InputError: an argument cannot be used; names it.
+        InputError: Names the argument.
 
     Example:
-        >>> import contactsense as cs
+        >>> import contactsense as cs, numpy as np
         >>> robot = cs.Robot.named("iiwa14")
-        >>> monitor = cs.ContactMonitor(robot, dt=1e-3, torque_threshold=1.0)
-        >>> q, v = robot.neutral(), robot.velocity({})
-        >>> monitor.update(q, v, robot.inverse_dynamics(q, v, v)).collision
+        >>> q, v = np.full(7, 0.4), np.zeros(7)
+        >>> tau = robot.inverse_dynamics(q, v, v)
+        >>> monitor = cs.ContactMonitor(robot, dt=1e-3)
+        >>> monitor.update(q, v, tau).collision
         False
+        >>> for _ in range(100):
+        ...     report = monitor.update(q, v, tau - 3.0)
+        >>> report.collision
+        True
+        >>> monitor.torque_threshold = 5.0
     """
+
     def __new__(
         cls,
         robot: Robot,
@@ -843,6 +966,42 @@ class ContactMonitor:
         pushing: bool = True,
         locate_within: float = 0.05,
     ) -> Self: ...
+    @property
+    def sensors(self) -> tuple[ForceTorqueSensor, ...]:
+        """The sensors, of `ForceTorqueSensor`, in the order of the readings."""
+    @property
+    def torque_threshold(self) -> NDArray[np.float64]:
+        """Thresholds on the torques, `(nv,)` [Nm; N for sliding joints]; a read-only copy.
+
+        A scalar or `(nv,)` may be set; bias, observer and signals stay as they are.
+        """
+    @torque_threshold.setter
+    def torque_threshold(self, value: ArrayLike) -> None: ...
+    @property
+    def wrench_threshold(self) -> NDArray[np.float64]:
+        """Thresholds on the external wrenches, `(n_sensors, 6)` [N, Nm]; a read-only copy.
+
+        A scalar, `(6,)` or `(n_sensors, 6)` may be set; bias, observers and signals stay as they are.
+        """
+    @wrench_threshold.setter
+    def wrench_threshold(self, value: ArrayLike) -> None: ...
+    @property
+    def observer_gain(self) -> NDArray[np.float64]:
+        """Gain of the momentum observer, `(nv,)` [1/s]; a read-only copy.
+
+        A scalar or `(nv,)` may be set; the external torque goes on from where it is, and `wrench_gain` follows where the
+        constructor was not given one.
+        """
+    @observer_gain.setter
+    def observer_gain(self, value: ArrayLike) -> None: ...
+    @property
+    def wrench_gain(self) -> float | None:
+        """Gain of the low-pass on the external wrenches [1/s]; infinite for no low-pass, None without sensors.
+
+        A number may be set, or None for what follows from `observer_gain`; the wrenches go on from where they are.
+        """
+    @wrench_gain.setter
+    def wrench_gain(self, value: float | None) -> None: ...
     def update(
         self,
         q: ArrayLike,
@@ -853,25 +1012,25 @@ class ContactMonitor:
         dt: float | None = None,
         friction: ArrayLike | None = None,
     ) -> ContactReport:
-        """One tick.
-
-        Over a step longer than 50 ms (or five times the constructor's `dt`) the external torque is kept as it was.
+        """Takes in one tick.
 
         Args:
-            q: configuration, `(nq,)`.
-            v: velocity, `(nv,)` [rad/s, m/s].
-            tau: motor torque, `(nv,)`, or `(nv - 6,)` for a floating base [Nm, N].
-            wrenches: readings of the sensors, `(n_sensors, 6)`, sensor axes [N, Nm]. A NaN in a reading leaves its sensor out
-                for this tick.
-            dt: time since the last accepted sample [s], for clocks that jitter and samples that were lost. By default the
-                constructor's, and as much again for every sample refused in between.
-            friction: torque of friction, shaped as `tau`, which is subtracted from it [Nm, N].
+            q: Configuration, `(nq,)`.
+            v: Velocity, `(nv,)` [rad/s; m/s for sliding joints], measured when `q` was.
+            tau: Motor torque, `(nv,)`, or `(nv - 6,)` for a floating base [Nm; N for sliding joints]: at that instant, or
+                better the mean of the torques held before and after it.
+            wrenches: The sensors' readings, `(n_sensors, 6)` [N, Nm], sensor axes. A NaN in a row leaves its sensor out
+                for this tick. Needed where there are sensors.
+            dt: Time since the last accepted sample [s], for clocks that jitter and samples that were lost. None: the
+                constructor's, and as much again for every sample refused in between. Over a longer step than 50 ms (or
+                five times the constructor's) the external torque is kept as it was.
+            friction: Torque of friction, shaped as `tau` [Nm, N], which is subtracted from it; None for no friction.
 
         Returns:
-            A `ContactReport`.
+            What the monitor says of this tick.
 
         Raises:
-            InputError: an argument cannot be used; names it. The state is then unchanged but for the time that passed.
+            InputError: Names the argument; the state is then unchanged but for the time that passed.
         """
     def reset(self) -> None:
         """Forgets all ticks, the bias too."""
@@ -883,32 +1042,29 @@ class ContactMonitor:
         """Time between two calls that is assumed where `update` is given none [s]."""
     @property
     def bias(self) -> NDArray[np.float64]:
-        """The bias that is subtracted, `(nv,)` [Nm, N]; zeros without `bias_time_constant`."""
-    @property
-    def torque_threshold(self) -> NDArray[np.float64]:
-        """Thresholds on the external torque, `(nv,)` [Nm, N]; settable between two ticks, to a scalar or `(nv,)`.
-
-        Bias and external torque stay as they are; a contact stays on for the hold time. The greatest bias follows, as it
-        is counted in thresholds.
-        """
-    @torque_threshold.setter
-    def torque_threshold(self, value: ArrayLike) -> None: ...
-    @property
-    def wrench_threshold(self) -> NDArray[np.float64]:
-        """Thresholds on the sensors' external wrenches, `(n_sensors, 6)` [N, Nm]; settable to a scalar, `(6,)` or
-        `(n_sensors, 6)`.
-        """
-    @wrench_threshold.setter
-    def wrench_threshold(self, value: ArrayLike) -> None: ...
-    @property
-    def observer_gain(self) -> NDArray[np.float64]:
-        """The observer's gain, `(nv,)` [1/s]; settable to a scalar or `(nv,)`: the external torque goes on from where it is."""
-    @observer_gain.setter
-    def observer_gain(self, value: ArrayLike) -> None: ...
+        """The bias that is subtracted, `(nv,)` [Nm; N for sliding joints]; zeros without `bias_time_constant`; read-only."""
 
 @final
 class ContactReport:
-    """What the monitor reports of one tick."""
+    """What the monitor says of one tick.
+
+    Frozen; can be pickled and copied.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> monitor = cs.ContactMonitor(cs.Robot.named("iiwa14"), dt=1e-3)
+        >>> report = monitor.update(np.zeros(7), np.zeros(7), np.zeros(7))
+        >>> report.collision, report.contacts, report.to_dict()["time"]
+        (False, (), 0.0)
+    """
+
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, strings, lists in place of arrays and tuples, and dicts in place of contacts.
+        """
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property
     def time(self) -> float:
         """Time since the first accepted call [s]."""
@@ -922,110 +1078,109 @@ class ContactReport:
     def remainder_learned(self) -> bool:
         """Whether a torque that stood still became the bias in this tick, which ended the contact.
 
-        It is what `hysteresis` may have left, what outlasted `bias_settle_time`, or no torque at all where the bias before
-        was wrong.
+        That is what `hysteresis` may have left, what outlasted `bias_settle_time`, or no torque at all where the bias
+        before was wrong.
         """
     @property
     def links(self) -> tuple[str, ...]:
-        """Names of the links that detection alone leaves for a contact (Vorndamme 2017, eq. 21).
+        """Names of the links that detection alone leaves for a contact.
 
-        On every branch they are those between the last joint or sensor over its threshold and the next.
+        On every branch those between the last joint or sensor over its threshold and the next (Vorndamme 2017, eq. 21).
         """
     @property
     def external_torque(self) -> NDArray[np.float64]:
-        """The external torque of all contacts, `(nv,)` [Nm, N], free of the tracked bias."""
+        """External torque of all contacts, free of the tracked bias, `(nv,)` [Nm; N for sliding joints]; read-only."""
     @property
     def collision_torque(self) -> NDArray[np.float64]:
-        """`external_torque` without wanted contacts, `(nv,)` [Nm, N]; zero at joints that are left out."""
+        """`external_torque` without wanted contacts, `(nv,)` [Nm; N for sliding joints]; zero at joints left out; read-only."""
     @property
     def wrenches(self) -> NDArray[np.float64]:
-        """The external wrench that each sensor measures, `(n_sensors, 6)` [N, Nm].
+        """The external wrench that each sensor sees, `(n_sensors, 6)` [N, Nm]; read-only.
 
-        Force and moment on the robot at the sensor's origin, world axes; NaN where a sensor is left out.
+        (force, moment) on the robot at the sensor's origin, world axes; NaN where a sensor is left out.
         """
     @property
     def sensors_left_out(self) -> tuple[str, ...]:
         """Names of the sensors without a reading in this tick."""
     @property
     def joints_left_out(self) -> tuple[str, ...]:
-        """Names of the joints whose torques are not used to detect a collision, since a wanted contact loads them unmeasured.
+        """Names of the joints whose torques say nothing of a collision, since a wanted contact loads them unmeasured.
 
-        They are those behind its sensor, and while that gives no reading (and a little after) those between it and the
-        base.
+        Those behind its sensor, and while that gives no reading (and a little after) those between it and the base.
         """
     @property
     def acceleration(self) -> NDArray[np.float64]:
-        """Estimated acceleration, `(nv,)` [rad/s^2, m/s^2]."""
+        """Estimated acceleration, `(nv,)` [rad/s^2; m/s^2 for sliding joints]; read-only."""
     @property
     def contacts(self) -> tuple[Contact, ...]:
-        """The contacts; empty while there is no collision."""
+        """The contacts; empty while there is no collision. The same tuple at every access."""
     @property
     def truncated(self) -> bool:
-        """Whether the answer is cut short.
+        """Whether something was left out.
 
-        There were more contacts than `max_contacts`, more hits of a line than are kept (the nearest are), or more
-        explanations to try than the bounded work of a call allows.
+        There were more contacts than `max_contacts`, more intersections of a line than are kept (the nearest are), or
+        more explanations to try than the bounded work of a call allows.
         """
-    def to_dict(self) -> dict[str, Any]:
-        """As plain Python data: numbers, strings, lists and dicts, `None` for what is undetermined."""
 
 @final
 class ContactParticleFilter:
     """Finds one contact anywhere on a robot from joint torques, by particles on its surface (Bimbo 2019).
 
-    Each particle is a hypothesis of link, point, obstacle, force and stiffness. Those that predict the torques while the
-    robot makes small motions in contact survive. It assumes one frictionless contact with a convex obstacle that stays
-    where it is.
+    Each particle is a hypothesis of link, point, obstacle, force and stiffness; those that predict the torques while the
+    robot makes small motions in contact survive. Frictionless, one contact, a convex obstacle that stays where it is. One
+    thread at a time may use it.
 
     Args:
-        robot: the robot.
-        particles: number of particles.
-        motion: model of how a contact moves: "curvature" (Bimbo 2019, eq. 8), or the baselines "fixed_on_link" and
-            "fixed_in_world".
-        measurement: "normal" (frictionless) or "friction_cone" (forces across the normal up to `friction` times the normal
-            force, integrated out).
-        friction: coefficient of friction of the "friction_cone".
-        links: names of the links to look on; by default all that move and have a surface.
-        seed: the same seed gives the same answer, for any number of `threads`.
-        force_range: least and greatest force at the start [N].
-        stiffness_range: least and greatest stiffness at the start [N/m].
-        radius_range: least and greatest radius of the obstacle's curvature at the start [m].
-        schedule: "adaptive" (or None; by what the data show), "paper", or a mapping of some of "sharpness" (alpha [1/Nm]),
-            "point_noise" [m], "force_noise" and "stiffness_noise" (relative), each a number or a pair (first, last), and
-            "updates", the number after which the last is reached.
-        threads: number of threads.
-        likelihood: "gaussian" (force and stiffness are integrated out) or "exponential" (Bimbo 2019, eq. 5; both are drawn
-            at random).
-        torque_noise: standard deviation of the torques at rest, scalar or `(nv,)` [Nm, N]. Greater noise is learnt.
-        relative_noise: standard deviation relative to the torque.
-        torque_threshold: external torque below which on every joint there is no contact, scalar or `(nv,)` [Nm, N]. The
-            default is more where three standard deviations at rest are; with `noise` it is these.
-        noise: a `NoiseModel` in place of `torque_noise` and `relative_noise`.
+        robot: The robot.
+        particles: How many.
+        motion: "curvature" (eq. 8), or the baselines "fixed_on_link" and "fixed_in_world".
+        measurement: "normal" (frictionless) or "friction_cone": forces across the normal up to `friction` of it,
+            integrated out.
+        friction: Coefficient of friction of the cone.
+        links: Names of the links to look on; None for all that move and have a surface.
+        seed: A whole number. Same seed, same answer, for any number of `threads`.
+        force_range: Least and greatest force at the start [N].
+        stiffness_range: Least and greatest stiffness at the start [N/m].
+        radius_range: Least and greatest radius of the obstacle's curvature at the start [m].
+        schedule: How sharply torques are weighed and how far particles are moved at random: "adaptive" (by what the data
+            show), "paper", or a mapping of some of "sharpness" (alpha, eq. 5) [1/Nm], "point_noise" [m], "force_noise" and
+            "stiffness_noise" (relative), each a number or a pair (first, last), and "updates", after which the last is
+            reached. None is "adaptive".
+        threads: How many threads share an update.
+        likelihood: "gaussian" (force and stiffness are integrated out) or "exponential" (eq. 5, both are drawn at random).
+        torque_noise: Standard deviation of the torque at rest, scalar or `(nv,)` [Nm; N for sliding joints]. Greater noise
+            is learnt from what is left over.
+        relative_noise: Standard deviation relative to the torque.
+        torque_threshold: Below it on every joint there is no contact, scalar or `(nv,)` [Nm; N for sliding joints]. None:
+            three standard deviations at rest, 0.06 for the default noise.
+        noise: A `NoiseModel` in place of `torque_noise` and `relative_noise`.
 
     Raises:
-        InputError: an argument cannot be used; names it.
-        MemoryError: the particles do not fit into memory.
+        InputError: Names the argument.
+        MemoryError: The particles do not fit into memory.
 
     Example:
-        >>> import contactsense as cs
+        >>> import contactsense as cs, numpy as np
         >>> robot = cs.Robot.named("iiwa14")
-        >>> particle_filter = cs.ContactParticleFilter(robot, particles=100)
-        >>> particle_filter.update(robot.neutral(), robot.torque({})).contact
-        False
+        >>> particle_filter = cs.ContactParticleFilter(robot, particles=500, seed=1)
+        >>> particle_filter.update(np.full(7, 0.4), [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0]).event
+        'started'
+        >>> again = cs.ContactParticleFilter(robot, **particle_filter.options)
     """
+
     def __new__(
         cls,
         robot: Robot,
         *,
-        particles: int = 10_000,
+        particles: int = 10000,
         motion: Literal["curvature", "fixed_on_link", "fixed_in_world"] = "curvature",
         measurement: Literal["normal", "friction_cone"] = "normal",
         friction: float = 0.5,
         links: Iterable[str] | None = None,
         seed: int = 0,
-        force_range: ArrayLike = (1.0, 100.0),
-        stiffness_range: ArrayLike = (3e2, 3e4),
-        radius_range: ArrayLike = (5e-3, 1.0),
+        force_range: ArrayLike = (1, 100),
+        stiffness_range: ArrayLike = (300.0, 30000.0),
+        radius_range: ArrayLike = (0.005, 1.0),
         schedule: Literal["adaptive", "paper"]
         | Mapping[str, float | tuple[float, float]]
         | None = "adaptive",
@@ -1036,159 +1191,205 @@ class ContactParticleFilter:
         torque_threshold: ArrayLike = 0.2,
         noise: NoiseModel | None = None,
     ) -> Self: ...
+    @property
+    def robot(self) -> Robot:
+        """The robot."""
+    @property
+    def options(self) -> dict[str, Any]:
+        """The keyword arguments in use, by name; `ContactParticleFilter(robot, **options)` makes an equal filter.
+
+        A new dict at every access. `noise` stands in it where it was given, otherwise `torque_noise` and
+        `relative_noise` do. Vectors are `(nv,)` or one number for all, as given.
+        """
     def update(self, q: ArrayLike, tau_ext: ArrayLike, *, time: float | None = None) -> ContactEstimate:
         """Takes in a configuration and the external torque measured there.
 
-        The first call with a contact spreads the particles over the surface. Other Python threads run meanwhile. With many
-        particles Ctrl-C stops the call, and the filter has then forgotten all updates.
+        The first call that feels a contact spreads the particles over the surface. Other Python threads run meanwhile.
+        With many particles Ctrl-C stops the call, and the filter has then forgotten all updates.
 
         Args:
-            q: configuration, `(nq,)`.
-            tau_ext: external torque, `(nv,)` [Nm, N]: what `MomentumObserver` gives, or `g(q) - tau` where the robot holds still.
-            time: time of the measurement [s], which is handed on to the estimate.
+            q: Configuration, `(nq,)`.
+            tau_ext: External torque, `(nv,)` [Nm; N for sliding joints and a base's linear part]: what `MomentumObserver`
+                gives, or `g(q) - tau` where the robot holds still.
+            time: Handed on to the estimate [s]; None for the number of updates.
 
         Returns:
-            A `ContactEstimate`.
+            What the particles say.
 
         Raises:
-            InputError: an argument cannot be used; names it. The filter is then unchanged.
+            InputError: Names the argument; the filter is then unchanged.
         """
     def reset(self) -> None:
         """Forgets all updates."""
     @property
-    def robot(self) -> Robot:
-        """The robot that contacts are looked for on."""
-    @property
     def particles(self) -> Particles:
-        """The particles after the last update."""
+        """The particles after the last update, one row each; a read-only copy."""
 
 @final
 class Particles:
-    """The particles of a filter, one row each."""
-    def __new__(
-        cls,
-        link: NDArray[np.int64],
-        point: NDArray[np.float64],
-        normal: NDArray[np.float64],
-        force: NDArray[np.float64],
-        stiffness: NDArray[np.float64],
-        weight: NDArray[np.float64],
-    ) -> Self: ...
-    def __len__(self) -> int: ...
+    """A copy of the particles, one row each; all arrays are read-only.
+
+    Frozen; can be pickled and copied.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> particle_filter = cs.ContactParticleFilter(cs.Robot.named("iiwa14"), particles=500)
+        >>> estimate = particle_filter.update(np.full(7, 0.4), [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])
+        >>> particle_filter.particles.point.shape
+        (500, 3)
+    """
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property
     def link(self) -> NDArray[np.int64]:
-        """Links, `(n,)`: places in `robot.link_names`."""
+        """Index into `robot.link_names`, `(n,)`."""
     @property
     def point(self) -> NDArray[np.float64]:
-        """Contact points, `(n, 3)`, world frame [m]."""
+        """Points on the surface, `(n, 3)`, world frame [m]."""
     @property
     def normal(self) -> NDArray[np.float64]:
-        """Outward normals, `(n, 3)`, world frame."""
+        """Outward unit normals there, `(n, 3)`, world frame."""
     @property
     def force(self) -> NDArray[np.float64]:
-        """Forces along the inward normal, `(n,)` [N]."""
+        """Force along the inward normal, `(n,)` [N]."""
     @property
     def stiffness(self) -> NDArray[np.float64]:
-        """Stiffnesses, `(n,)` [N/m]."""
+        """Stiffness of the contact, `(n,)` [N/m]."""
     @property
     def weight(self) -> NDArray[np.float64]:
-        """Weights, `(n,)`; their sum is one."""
+        """Weights, `(n,)`, which sum to one."""
 
 @final
 class ContactEstimate:
-    """The contact as a filter estimates it."""
+    """The contact as a filter sees it.
+
+    Frozen; can be pickled and copied.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> particle_filter = cs.ContactParticleFilter(robot, particles=500)
+        >>> particle_filter.update(np.full(7, 0.4), np.zeros(7))
+        ContactEstimate(no contact, event='none')
+        >>> particle_filter.update(np.full(7, 0.4), [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0]).ambiguous
+        True
+    """
+
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, strings, lists in place of arrays and tuples, and dicts in place of modes.
+        """
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property
     def contact(self) -> bool:
         """Whether the torques show a contact."""
     @property
     def event(self) -> Literal["none", "started", "continued", "lost", "changed", "jumped"]:
-        """What happened with this update.
+        """What happened at this update.
 
-        "none", "started", "continued", "lost", "changed" (the contact is elsewhere than it was estimated before) or
-        "jumped" (the pose did, so the search began anew).
+        "none", "started", "continued", "lost", "changed" (the contact is elsewhere than it was held to be) or "jumped"
+        (the pose did, so the search began anew).
         """
     @property
     def link(self) -> str:
-        """The most probable link's name; empty without contact."""
+        """Name of the most probable link; empty without contact."""
     @property
     def point(self) -> NDArray[np.float64]:
-        """The most probable place on that link, `(3,)`, world frame [m]; NaN without contact."""
+        """The most probable place on that link, `(3,)`, world frame [m]; NaN without contact; read-only."""
     @property
     def force(self) -> NDArray[np.float64]:
-        """Force on the robot, `(3,)`, world frame [N]; NaN without contact."""
+        """Force on the robot, `(3,)`, world frame [N]; NaN without contact; read-only."""
     @property
     def normal(self) -> NDArray[np.float64]:
-        """Outward normal of the contact, `(3,)`, world frame; NaN without contact."""
+        """Outward unit normal of the contact, `(3,)`, world frame; NaN without contact; read-only."""
     @property
     def magnitude(self) -> float:
         """Magnitude of the force [N]; NaN without contact."""
     @property
     def stiffness(self) -> float | None:
-        """Stiffness of the contact [N/m]; `None` without contact, and where the motion model has none."""
+        """Stiffness of the contact [N/m]; None without contact, and where the motion model has none."""
     @property
     def covariance(self) -> NDArray[np.float64]:
-        """Covariance of the point, `(3, 3)`, world frame [m^2]: second moment of all particles about `point`, other modes
-        included.
+        """Covariance of the point, `(3, 3)`, world frame [m^2]; NaN without contact; read-only.
+
+        The second moment of all particles about `point`, other modes included.
         """
     @property
     def link_probabilities(self) -> dict[str, float]:
-        """Share of the particles' weight on each link that is looked on."""
+        """Share of the particles' weight on each link that is looked on, by the link's name; a new dict at every access."""
     @property
     def modes(self) -> tuple[Mode, ...]:
-        """Clusters of particles, best first; at most eight."""
+        """Clusters of particles, best first; at most eight. The same tuple at every access."""
     @property
     def ambiguous(self) -> bool:
-        """Whether the contact is not determined.
+        """Whether the data do not say which link, or where on it, or motion has not confirmed yet that it is a single push.
 
-        The data do not determine which link, or where on it, or motion has not confirmed yet that it is a single push: that
-        one obstacle that stays explains the torques at the last poses, is in contact with the link near `point`, and its
+        Confirmed: one obstacle that stays explains the torques at the last poses, touches the link near `point`, and its
         force follows the motion.
         """
     @property
     def explained(self) -> bool:
         """Whether a push by one obstacle that stays explains the torques at the last poses.
 
-        These are 24 at most, each 5 mm from the one before. What is left over is within three times the stated noise (a chi-square test at 99 %), and the force follows the
-        motion no less than on the softest obstacle of `stiffness_range` (another one at 99 %). Where not, the estimate is
-        ambiguous, too: two contacts, a moment, a payload, a pull, or biased torques.
+        These are 24 at most, each 5 mm from the one before. What is left over is within three times the stated noise (a
+        chi-square test at 99 %), and the force follows the motion no less than on the softest obstacle of
+        `stiffness_range` (another one at 99 %). Where not, the estimate is ambiguous, too: two contacts, a moment, a
+        payload, a pull, or biased torques.
         """
 
     @property
     def residual(self) -> float:
-        """Torque that the best push does not explain at this update, in standard deviations of the stated noise.
+        """What the best push leaves over at this update: root mean square over the joints, in standard deviations.
 
-        It is the root mean square over all joints; the noise is `torque_noise` and `relative_noise`.
+        The standard deviations are those of the stated noise (`noise`, or `torque_noise` and `relative_noise`).
         """
 
     @property
     def effective_samples(self) -> float:
-        """Effective number of particles before resampling."""
+        """Effective number of particles, before resampling."""
     @property
     def time(self) -> float:
         """Time as given to `update` [s]; otherwise the number of updates since the start."""
-    def to_dict(self) -> dict[str, Any]:
-        """As plain Python data: numbers, strings, lists and dicts, `None` for what is undetermined."""
 
 @final
 class Mode:
-    """A place where the contact may be."""
+    """A place where the contact may be.
+
+    Frozen; can be pickled and copied.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> particle_filter = cs.ContactParticleFilter(robot, particles=500)
+        >>> estimate = particle_filter.update(np.full(7, 0.4), [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])
+        >>> 0.0 < estimate.modes[0].probability <= 1.0
+        True
+    """
+
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, strings, and lists in place of arrays.
+        """
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property
     def link(self) -> str:
-        """The link's name."""
+        """Name of the link."""
     @property
     def point(self) -> NDArray[np.float64]:
-        """The place on the link's surface, `(3,)`, world frame [m]."""
+        """Where it is on the link's surface, `(3,)`, world frame [m]; read-only."""
     @property
     def force(self) -> NDArray[np.float64]:
-        """Force on the robot, `(3,)`, world frame [N]."""
+        """Force on the robot, `(3,)`, world frame [N]; read-only."""
     @property
     def normal(self) -> NDArray[np.float64]:
-        """Outward normal, `(3,)`, world frame."""
+        """Outward unit normal of the surface, `(3,)`, world frame; read-only."""
     @property
     def probability(self) -> float:
         """Share of the particles' weight."""
     @property
     def spread(self) -> float:
         """Root of the mean squared distance of the mode's particles from their mean [m]."""
-    def to_dict(self) -> dict[str, Any]:
-        """As plain Python data: numbers, strings and lists."""

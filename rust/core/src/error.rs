@@ -91,14 +91,6 @@ impl Error {
         Error::Input { argument: argument.into(), problem: problem.into() }
     }
 
-    /// The same of an argument that another caller knows under the name `to`.
-    pub(crate) fn for_argument(self, from: &str, to: &'static str) -> Self {
-        match self {
-            Error::Input { argument, problem } if argument == from => Error::input(to, problem),
-            other => other,
-        }
-    }
-
     /// The same of an element that the message names already, where no element is known yet.
     #[must_use]
     pub(crate) fn of(mut self, owner: &str) -> Self {

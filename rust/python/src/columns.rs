@@ -43,14 +43,17 @@ impl Columns {
         Ok(())
     }
 
-    /// Without a copy.
+    /// Without a copy; nobody can write to them.
     pub fn arrays(self, py: Python<'_>) -> PyResult<Arrays> {
         let count = self.triangles.len();
         let rows = |rows: Vec<[f64; 3]>| {
-            let array = PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])?;
-            PyResult::Ok(read_only(array).unbind())
+            let rows = PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])?;
+            PyResult::Ok(read_only(rows).unbind())
         };
-        let triangles = read_only(PyArray1::from_vec(py, self.triangles)).unbind();
-        Ok((rows(self.points)?, rows(self.normals)?, triangles))
+        Ok((
+            rows(self.points)?,
+            rows(self.normals)?,
+            read_only(PyArray1::from_vec(py, self.triangles)).unbind(),
+        ))
     }
 }

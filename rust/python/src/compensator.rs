@@ -2,39 +2,40 @@
 
 use std::sync::Mutex;
 
-use contactsense::sensor::LoadCompensator;
+use contactsense::sensor::{ForceTorqueSensor, LoadCompensator};
 use numpy::PyArray2;
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
 use crate::arguments::{robot, sole};
 use crate::arrays::{Readings, Vector};
 use crate::errors::to_python;
 use crate::returned::wrench_rows;
 use crate::robot::PyRobot;
-use crate::sensor::sensors;
+use crate::sensor::{sensor_tuple, sensors};
 
 /// Frees the readings of force/torque sensors of the weight and inertia behind them (Vorndamme 2017, eqs. 13-19).
 ///
-/// One pass serves all sensors, also several in a chain and those at fixed joints.
+/// One pass for all sensors, also for several in a chain and at fixed joints. One thread at a time may use it.
 ///
 /// Args:
-///     robot: the robot that carries the sensors.
-///     sensors: the sensors, in the order of the readings; names and links are unique.
+///     robot: The robot.
+///     sensors: Of `ForceTorqueSensor`; names and links are unique.
 ///
 /// Raises:
-///     InputError: a sensor cannot be used; names it.
+///     InputError: Names the argument.
 ///
 /// Example:
-///     >>> import contactsense as cs
+///     >>> import contactsense as cs, numpy as np
 ///     >>> robot = cs.Robot.named("iiwa14")
-///     >>> compensator = cs.LoadCompensator(robot, [cs.ForceTorqueSensor("wrist", "iiwa_link_7")])
-///     >>> q, v = robot.neutral(), robot.velocity({})
-///     >>> compensator.update(q, v, v, [[0.0, 0.0, -3.0, 0.0, 0.0, 0.0]]).shape
+///     >>> compensator = cs.LoadCompensator(robot, [cs.ForceTorqueSensor("wrist", robot.link_names[-1])])
+///     >>> compensator.update(np.zeros(7), np.zeros(7), np.zeros(7), np.zeros((1, 6))).shape
 ///     (1, 6)
 #[pyclass(frozen, name = "LoadCompensator", module = "contactsense")]
 pub struct PyLoadCompensator {
+    robot: Py<PyRobot>,
+    sensors: Vec<ForceTorqueSensor>,
     compensator: Mutex<LoadCompensator>,
-    shown: String,
 }
 
 #[pymethods]
@@ -47,28 +48,39 @@ impl PyLoadCompensator {
         let sensors = self::sensors(sensors)?;
         let compensator = LoadCompensator::new(robot.get().0.clone(), &sensors);
         let compensator = Mutex::new(compensator.map_err(|error| to_python(robot.py(), error))?);
-        let shown = format!("LoadCompensator('{}', {} sensors)", robot.get().0.name(), sensors.len());
-        Ok(Self { compensator, shown })
+        Ok(Self { robot: robot.unbind(), sensors, compensator })
     }
 
-    fn __repr__(&self) -> &str {
-        &self.shown
+    /// The robot.
+    #[getter]
+    fn robot(&self, py: Python<'_>) -> Py<PyRobot> {
+        self.robot.clone_ref(py)
     }
 
-    /// The external wrench that each sensor measures.
+    /// The sensors, of `ForceTorqueSensor`, in the order of the wrenches.
+    #[getter]
+    fn sensors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        sensor_tuple(py, &self.sensors)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("LoadCompensator('{}', {} sensors)", self.robot.get().0.name(), self.sensors.len())
+    }
+
+    /// The external wrench that each sensor sees.
     ///
     /// Args:
-    ///     q: configuration, `(nq,)`.
-    ///     v: velocity, `(nv,)` [rad/s, m/s].
-    ///     a: acceleration, `(nv,)` [rad/s^2, m/s^2].
-    ///     wrenches: the readings, `(n_sensors, 6)`, sensor axes [N, Nm]. A NaN in a reading leaves its sensor out.
+    ///     q: Configuration, `(nq,)`.
+    ///     v: Velocity, `(nv,)` [rad/s; m/s for sliding joints].
+    ///     a: Acceleration, `(nv,)` [rad/s^2; m/s^2 for sliding joints].
+    ///     wrenches: The readings, `(n_sensors, 6)` [N, Nm], sensor axes. A NaN in a row leaves its sensor out: its row of
+    ///         the answer is NaN, the others hold.
     ///
     /// Returns:
-    ///     `(n_sensors, 6)` [N, Nm]: force and moment on the robot at the sensor's origin, world axes; NaN for a sensor that
-    ///     is left out.
+    ///     `(n_sensors, 6)` [N, Nm]: (force, moment) on the robot at each sensor's origin, world axes; read-only.
     ///
     /// Raises:
-    ///     InputError: an argument cannot be used; names it.
+    ///     InputError: Names the argument.
     fn update<'py>(
         &self,
         q: &Bound<'py, PyAny>,

@@ -2,49 +2,79 @@
 
 use std::sync::Arc;
 
-use contactsense::nalgebra::{Matrix3, Vector3};
+use contactsense::nalgebra::Matrix3;
 use contactsense::particle::{FilterEstimate, Mode};
+use contactsense::robot::LinkIndex;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::isolator::once;
 use crate::names::Names;
-use crate::plain::{reduced, restored, to_dict, Reduced};
-use crate::returned::{from_rows, read_only, result};
+use crate::once::Once;
+use crate::pickle::{plain_dict, reduced, Reduced};
+use crate::returned::{from_rows, numbers, read_only, vector};
+
+type Array<'py> = Bound<'py, PyArray1<f64>>;
 
 /// A place where the contact may be.
+///
+/// Frozen; can be pickled and copied.
+///
+/// Example:
+///     >>> import contactsense as cs, numpy as np
+///     >>> robot = cs.Robot.named("iiwa14")
+///     >>> particle_filter = cs.ContactParticleFilter(robot, particles=500)
+///     >>> estimate = particle_filter.update(np.full(7, 0.4), [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])
+///     >>> 0.0 < estimate.modes[0].probability <= 1.0
+///     True
 #[pyclass(frozen, name = "Mode", module = "contactsense")]
 pub struct PyMode {
     names: Arc<Names>,
     mode: Mode,
+    vectors: Vectors,
+}
+
+#[derive(Default)]
+struct Vectors {
+    point: Once<PyArray1<f64>>,
+    force: Once<PyArray1<f64>>,
+    normal: Once<PyArray1<f64>>,
+}
+
+impl PyMode {
+    fn new(names: Arc<Names>, mode: Mode) -> Self {
+        Self { names, mode, vectors: Vectors::default() }
+    }
+
+    pub fn from_content((names, mode): (Names, Mode)) -> Self {
+        Self::new(Arc::new(names), mode)
+    }
 }
 
 #[pymethods]
 impl PyMode {
-    /// The link's name.
+    /// Name of the link.
     #[getter]
     fn link(&self) -> &str {
         self.names.link(self.mode.link)
     }
 
-    /// The place on the link's surface, `(3,)`, world frame [m].
+    /// Where it is on the link's surface, `(3,)`, world frame [m]; read-only.
     #[getter]
-    fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        result(py, self.mode.point.as_slice())
+    fn point<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        self.vectors.point.get(py, || Ok(numbers(py, self.mode.point.as_slice())))
     }
 
-    /// Force on the robot, `(3,)`, world frame [N].
+    /// Force on the robot, `(3,)`, world frame [N]; read-only.
     #[getter]
-    fn force<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        result(py, self.mode.force.as_slice())
+    fn force<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        self.vectors.force.get(py, || Ok(numbers(py, self.mode.force.as_slice())))
     }
 
-    /// Outward normal, `(3,)`, world frame.
+    /// Outward unit normal of the surface, `(3,)`, world frame; read-only.
     #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        result(py, self.mode.normal.as_slice())
+    fn normal<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        self.vectors.normal.get(py, || Ok(numbers(py, self.mode.normal.as_slice())))
     }
 
     /// Share of the particles' weight.
@@ -59,9 +89,12 @@ impl PyMode {
         self.mode.spread
     }
 
-    /// As plain Python data: numbers, strings and lists.
+    /// All attributes by name.
+    ///
+    /// Returns:
+    ///     Plain Python values: numbers, strings, and lists in place of arrays.
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(slf, &["link", "point", "force", "normal", "probability", "spread"])
+        plain_dict(slf.as_any(), &["link", "point", "force", "normal", "probability", "spread"])
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
@@ -75,19 +108,7 @@ impl PyMode {
     }
 }
 
-/// The contact as a filter estimates it.
-#[pyclass(frozen, name = "ContactEstimate", module = "contactsense")]
-pub struct PyContactEstimate {
-    names: Arc<Names>,
-    /// Those that are looked on.
-    links: Arc<[usize]>,
-    found: FilterEstimate,
-    time: f64,
-    wrapped: PyOnceLock<Py<PyTuple>>,
-}
-
-/// What `to_dict` of an estimate holds.
-const ESTIMATE: [&str; 16] = [
+const ATTRIBUTES: [&str; 16] = [
     "contact",
     "event",
     "link",
@@ -106,28 +127,43 @@ const ESTIMATE: [&str; 16] = [
     "time",
 ];
 
-/// An object that was pickled.
-pub fn restore<'py>(py: Python<'py>, class: &str, state: &[u8]) -> PyResult<Bound<'py, PyAny>> {
-    if class == "Mode" {
-        let (names, mode) = restored(state)?;
-        return Ok(Bound::new(py, PyMode { names: Arc::new(names), mode })?.into_any());
-    }
-    let (names, links, found, time): (Names, Vec<usize>, _, _) = restored(state)?;
-    Ok(Bound::new(py, PyContactEstimate::new(Arc::new(names), links.into(), found, time))?.into_any())
+/// The contact as a filter sees it.
+///
+/// Frozen; can be pickled and copied.
+///
+/// Example:
+///     >>> import contactsense as cs, numpy as np
+///     >>> robot = cs.Robot.named("iiwa14")
+///     >>> particle_filter = cs.ContactParticleFilter(robot, particles=500)
+///     >>> particle_filter.update(np.full(7, 0.4), np.zeros(7))
+///     ContactEstimate(no contact, event='none')
+///     >>> particle_filter.update(np.full(7, 0.4), [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0]).ambiguous
+///     True
+#[pyclass(frozen, name = "ContactEstimate", module = "contactsense")]
+pub struct PyContactEstimate {
+    names: Arc<Names>,
+    /// Those that are looked on.
+    links: Arc<[LinkIndex]>,
+    found: FilterEstimate,
+    time: f64,
+    vectors: Vectors,
+    covariance: Once<PyArray2<f64>>,
+    modes: Once<PyTuple>,
 }
 
 impl PyContactEstimate {
-    pub fn new(names: Arc<Names>, links: Arc<[usize]>, found: FilterEstimate, time: f64) -> Self {
-        PyContactEstimate { names, links, found, time, wrapped: PyOnceLock::new() }
+    pub fn new(names: Arc<Names>, links: Arc<[LinkIndex]>, found: FilterEstimate, time: f64) -> Self {
+        let (vectors, covariance, modes) = (Vectors::default(), Once::default(), Once::default());
+        Self { names, links, found, time, vectors, covariance, modes }
+    }
+
+    pub fn from_content(content: (Names, Vec<LinkIndex>, FilterEstimate, f64)) -> Self {
+        let (names, links, found, time) = content;
+        Self::new(Arc::new(names), links.into(), found, time)
     }
 
     fn contact_mode(&self) -> Option<&Mode> {
         self.found.estimate.contact.as_ref()
-    }
-
-    fn vector<'py>(&self, py: Python<'py>, of: impl Fn(&Mode) -> Vector3<f64>) -> Bound<'py, PyArray1<f64>> {
-        let vector = self.contact_mode().map_or(Vector3::repeat(f64::NAN), of);
-        result(py, vector.as_slice())
     }
 }
 
@@ -139,37 +175,37 @@ impl PyContactEstimate {
         self.contact_mode().is_some()
     }
 
-    /// What happened with this update.
+    /// What happened at this update.
     ///
-    /// "none", "started", "continued", "lost", "changed" (the contact is elsewhere than it was estimated before) or
-    /// "jumped" (the pose did, so the search began anew).
+    /// "none", "started", "continued", "lost", "changed" (the contact is elsewhere than it was held to be) or "jumped"
+    /// (the pose did, so the search began anew).
     #[getter]
     fn event(&self) -> &str {
         self.found.event.name()
     }
 
-    /// The most probable link's name; empty without contact.
+    /// Name of the most probable link; empty without contact.
     #[getter]
     fn link(&self) -> &str {
         self.contact_mode().map_or("", |mode| self.names.link(mode.link))
     }
 
-    /// The most probable place on that link, `(3,)`, world frame [m]; NaN without contact.
+    /// The most probable place on that link, `(3,)`, world frame [m]; NaN without contact; read-only.
     #[getter]
-    fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.vector(py, |mode| mode.point)
+    fn point<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        self.vectors.point.get(py, || Ok(vector(py, self.contact_mode().map(|mode| mode.point))))
     }
 
-    /// Force on the robot, `(3,)`, world frame [N]; NaN without contact.
+    /// Force on the robot, `(3,)`, world frame [N]; NaN without contact; read-only.
     #[getter]
-    fn force<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.vector(py, |mode| mode.force)
+    fn force<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        self.vectors.force.get(py, || Ok(vector(py, self.contact_mode().map(|mode| mode.force))))
     }
 
-    /// Outward normal of the contact, `(3,)`, world frame; NaN without contact.
+    /// Outward unit normal of the contact, `(3,)`, world frame; NaN without contact; read-only.
     #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.vector(py, |mode| mode.normal)
+    fn normal<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        self.vectors.normal.get(py, || Ok(vector(py, self.contact_mode().map(|mode| mode.normal))))
     }
 
     /// Magnitude of the force [N]; NaN without contact.
@@ -178,41 +214,45 @@ impl PyContactEstimate {
         self.contact_mode().map_or(f64::NAN, |mode| mode.force.norm())
     }
 
-    /// Stiffness of the contact [N/m]; `None` without contact, and where the motion model has none.
+    /// Stiffness of the contact [N/m]; None without contact, and where the motion model has none.
     #[getter]
     fn stiffness(&self) -> Option<f64> {
         self.contact_mode()?.stiffness
     }
 
-    /// Covariance of the point, `(3, 3)`, world frame [m^2]: second moment of all particles about `point`, other modes
-    /// included.
+    /// Covariance of the point, `(3, 3)`, world frame [m^2]; NaN without contact; read-only.
+    ///
+    /// The second moment of all particles about `point`, other modes included.
     #[getter]
     fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let c = self.found.estimate.covariance.unwrap_or(Matrix3::repeat(f64::NAN));
-        from_rows(py, (0..3).map(|i| [c[(i, 0)], c[(i, 1)], c[(i, 2)]])).map(read_only)
+        let rows = (0..3).map(|i| [c[(i, 0)], c[(i, 1)], c[(i, 2)]]);
+        self.covariance.get(py, || Ok(read_only(from_rows(py, rows)?)))
     }
 
-    /// Share of the particles' weight on each link that is looked on.
+    /// Share of the particles' weight on each link that is looked on, by the link's name; a new dict at every access.
     #[getter]
     fn link_probabilities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
         for (&link, probability) in self.links.iter().zip(&self.found.estimate.link_probabilities) {
-            dict.set_item(&self.names.links[link], probability)?;
+            dict.set_item(self.names.link(link), probability)?;
         }
         Ok(dict)
     }
 
-    /// Clusters of particles, best first; at most eight.
+    /// Clusters of particles, best first; at most eight. The same tuple at every access.
     #[getter]
     fn modes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        let wrap = |mode: &Mode| Bound::new(py, PyMode { names: self.names.clone(), mode: *mode });
-        once(py, &self.wrapped, || self.found.estimate.modes.iter().map(wrap).collect())
+        self.modes.get(py, || {
+            let wrap = |mode: &Mode| Bound::new(py, PyMode::new(self.names.clone(), *mode));
+            let modes: Vec<_> = self.found.estimate.modes.iter().map(wrap).collect::<PyResult<_>>()?;
+            PyTuple::new(py, modes)
+        })
     }
 
-    /// Whether the contact is not determined.
+    /// Whether the data do not say which link, or where on it, or motion has not confirmed yet that it is a single push.
     ///
-    /// The data do not determine which link, or where on it, or motion has not confirmed yet that it is a single push: that
-    /// one obstacle that stays explains the torques at the last poses, is in contact with the link near `point`, and its
+    /// Confirmed: one obstacle that stays explains the torques at the last poses, touches the link near `point`, and its
     /// force follows the motion.
     #[getter]
     fn ambiguous(&self) -> bool {
@@ -221,23 +261,24 @@ impl PyContactEstimate {
 
     /// Whether a push by one obstacle that stays explains the torques at the last poses.
     ///
-    /// These are 24 at most, each 5 mm from the one before. What is left over is within three times the stated noise (a chi-square test at 99 %), and the force follows the
-    /// motion no less than on the softest obstacle of `stiffness_range` (another one at 99 %). Where not, the estimate is
-    /// ambiguous, too: two contacts, a moment, a payload, a pull, or biased torques.
+    /// These are 24 at most, each 5 mm from the one before. What is left over is within three times the stated noise (a
+    /// chi-square test at 99 %), and the force follows the motion no less than on the softest obstacle of
+    /// `stiffness_range` (another one at 99 %). Where not, the estimate is ambiguous, too: two contacts, a moment, a
+    /// payload, a pull, or biased torques.
     #[getter]
     fn explained(&self) -> bool {
         self.found.explained
     }
 
-    /// Torque that the best push does not explain at this update, in standard deviations of the stated noise.
+    /// What the best push leaves over at this update: root mean square over the joints, in standard deviations.
     ///
-    /// It is the root mean square over all joints; the noise is `torque_noise` and `relative_noise`.
+    /// The standard deviations are those of the stated noise (`noise`, or `torque_noise` and `relative_noise`).
     #[getter]
     fn residual(&self) -> f64 {
         self.found.residual
     }
 
-    /// Effective number of particles before resampling.
+    /// Effective number of particles, before resampling.
     #[getter]
     fn effective_samples(&self) -> f64 {
         self.found.effective_samples
@@ -249,9 +290,12 @@ impl PyContactEstimate {
         self.time
     }
 
-    /// As plain Python data: numbers, strings, lists and dicts, `None` for what is undetermined.
+    /// All attributes by name.
+    ///
+    /// Returns:
+    ///     Plain Python values: numbers, strings, lists in place of arrays and tuples, and dicts in place of modes.
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        to_dict(slf, &ESTIMATE)
+        plain_dict(slf.as_any(), &ATTRIBUTES)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {

@@ -8,45 +8,35 @@ mod arguments;
 mod arrays;
 mod columns;
 mod compensator;
+mod contact;
 mod description;
 mod errors;
 mod estimate;
+mod filter_options;
 mod isolator;
 mod monitor;
 mod names;
 mod noise;
 mod observer;
+mod once;
 mod particle;
-mod plain;
+mod pickle;
+mod report;
 mod returned;
 mod robot;
 mod sensor;
 mod surface;
 mod urdf;
 
-/// An object of a class that was pickled, from its state.
-#[pyfunction]
-fn _restore<'py>(py: Python<'py>, class_: &str, state: &[u8]) -> PyResult<Bound<'py, PyAny>> {
-    match class_ {
-        "Candidate" | "Contact" | "Isolation" => isolator::restore(py, class_, state),
-        "ContactReport" => monitor::restore(py, state),
-        "Mode" | "ContactEstimate" => estimate::restore(py, class_, state),
-        "NoiseModel" => Ok(Bound::new(py, noise::PyNoiseModel(plain::restored(state)?))?.into_any()),
-        "ForceTorqueSensor" => {
-            Ok(Bound::new(py, sensor::PyForceTorqueSensor(plain::restored(state)?))?.into_any())
-        }
-        other => Err(errors::input(py, format!("class: there is no '{other}' to restore"))),
-    }
-}
-
-#[pymodule]
+// Arguments are copied out of NumPy arrays that another thread may write to; only the GIL keeps the two apart.
+#[pymodule(gil_used = true)]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("build_profile", if cfg!(debug_assertions) { "debug" } else { "release" })?;
     errors::register(module)?;
     module.add_function(wrap_pyfunction!(urdf::_checked_urdf, module)?)?;
     module.add_function(wrap_pyfunction!(urdf::_robot_from_urdf, module)?)?;
-    module.add_function(wrap_pyfunction!(_restore, module)?)?;
+    module.add_function(wrap_pyfunction!(pickle::_restore, module)?)?;
     module.add_class::<robot::PyRobot>()?;
     module.add_class::<surface::PySurface>()?;
     module.add_class::<surface::ClosestPoints>()?;
@@ -57,11 +47,11 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<compensator::PyLoadCompensator>()?;
     module.add_class::<noise::PyNoiseModel>()?;
     module.add_class::<isolator::PyContactIsolator>()?;
-    module.add_class::<isolator::PyIsolation>()?;
-    module.add_class::<isolator::PyContact>()?;
-    module.add_class::<isolator::PyCandidate>()?;
+    module.add_class::<contact::PyIsolation>()?;
+    module.add_class::<contact::PyContact>()?;
+    module.add_class::<contact::PyCandidate>()?;
     module.add_class::<monitor::PyContactMonitor>()?;
-    module.add_class::<monitor::PyContactReport>()?;
+    module.add_class::<report::PyContactReport>()?;
     module.add_class::<particle::PyContactParticleFilter>()?;
     module.add_class::<particle::Particles>()?;
     module.add_class::<estimate::PyContactEstimate>()?;

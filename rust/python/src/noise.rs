@@ -5,36 +5,36 @@ use pyo3::prelude::*;
 
 use crate::errors::{input, to_python};
 use crate::observer::scalar_or_vector;
-use crate::plain::{reduced, Reduced};
-use crate::returned::result;
+use crate::pickle::{reduced, Reduced};
+use crate::returned::numbers;
 
 /// Errors of the external torque of the untouched robot, each as one standard deviation.
 ///
-/// What says how large errors are takes it as `noise`.
+/// What says how large errors are takes it as `noise`. Frozen; equal where all numbers are; can be pickled and copied.
 ///
 /// Args:
-///     torque: white noise of the torque, per sample, scalar or `(nv,)` [Nm; N for sliding joints].
-///     velocity: white noise of the velocity, per sample, scalar or `(nv,)` [rad/s; m/s for sliding joints]. It acts
-///         through the gain of an observer and the mass matrix; what is given an external torque leaves it out.
-///     relative: share of the contact's own torque, scalar or `(nv,)`; a tenth of it also of the largest one.
-///     model: slow errors left over (bias, friction, masses), scalar or `(nv,)` [Nm; N for sliding joints].
+///     torque: White noise of the torque, per sample, scalar or `(nv,)` [Nm; N for sliding joints].
+///     velocity: White noise of the velocity, scalar or `(nv,)` [rad/s; m/s for sliding joints]. It acts through the gain
+///         of an observer and the mass matrix; what is given an external torque leaves it out.
+///     relative: Share of the contact's own torque, scalar or `(nv,)`; a tenth of it also of the largest torque.
+///     model: Slow errors left over (bias, friction, masses), scalar or `(nv,)` [Nm; N for sliding joints].
 ///
 /// Raises:
-///     InputError: an argument is negative, not finite, or of a wrong shape; names it.
+///     InputError: Names the argument.
 ///
 /// Example:
 ///     >>> import contactsense as cs
-///     >>> cs.NoiseModel(torque=0.1).torque
-///     0.1
+///     >>> cs.NoiseModel(model=0.2)
+///     NoiseModel(torque=0.05, velocity=0.0, relative=0.03, model=0.2)
 #[pyclass(frozen, eq, skip_from_py_object, name = "NoiseModel", module = "contactsense")]
 #[derive(PartialEq, Clone)]
 pub struct PyNoiseModel(pub NoiseModel);
 
 /// A number where one holds for all.
-fn shown<'py>(py: Python<'py>, values: &[f64]) -> PyResult<Bound<'py, PyAny>> {
-    match values {
+pub fn values<'py>(py: Python<'py>, given: &[f64]) -> PyResult<Bound<'py, PyAny>> {
+    match given {
         [value] => Ok(value.into_pyobject(py)?.into_any()),
-        _ => Ok(result(py, values).into_any()),
+        _ => Ok(numbers(py, given).into_any()),
     }
 }
 
@@ -65,28 +65,28 @@ impl PyNoiseModel {
         Ok(Self(noise))
     }
 
-    /// White noise of the torque [Nm; N for sliding joints]: a number, or `(nv,)`, a copy.
+    /// White noise of the torque [Nm; N for sliding joints]: a number or `(nv,)`; a read-only copy.
     #[getter]
     fn torque<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        shown(py, &self.0.torque)
+        values(py, &self.0.torque)
     }
 
-    /// White noise of the velocity [rad/s, m/s]: a number, or `(nv,)`, a copy.
+    /// White noise of the velocity [rad/s, m/s]: a number or `(nv,)`; a read-only copy.
     #[getter]
     fn velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        shown(py, &self.0.velocity)
+        values(py, &self.0.velocity)
     }
 
-    /// Share of the contact's own torque: a number, or `(nv,)`, a copy.
+    /// Share of the contact's own torque: a number or `(nv,)`; a read-only copy.
     #[getter]
     fn relative<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        shown(py, &self.0.relative)
+        values(py, &self.0.relative)
     }
 
-    /// Slow errors left over [Nm; N for sliding joints]: a number, or `(nv,)`, a copy.
+    /// Slow errors left over [Nm; N for sliding joints]: a number or `(nv,)`; a read-only copy.
     #[getter]
     fn model<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        shown(py, &self.0.model)
+        values(py, &self.0.model)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {

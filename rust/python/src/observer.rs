@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use crate::arguments::{number_if_any, robot, sole, Number};
 use crate::arrays::Vector;
 use crate::errors::to_python;
-use crate::returned::result;
+use crate::returned::numbers;
 use crate::robot::PyRobot;
 
 /// A scalar, or one number per velocity variable.
@@ -23,24 +23,28 @@ pub fn scalar_or_vector(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<f
 
 /// The generalised momentum observer (Vorndamme 2017, eqs. 4-6) with its acceleration (eq. 9).
 ///
-/// It estimates the external torque from positions, velocities and motor torques. Each component is the true one behind
-/// a first-order low-pass with time constant `1 / gain`, for any `gain * dt`.
+/// Estimates the external torque from positions, velocities and motor torques; each component is the true one behind a
+/// first-order low-pass with time constant `1 / gain`. Stable for any `gain * dt`. One thread at a time may use it.
 ///
 /// Args:
-///     robot: the robot that is observed.
-///     dt: time between two calls [s].
-///     gain: scalar or `(nv,)` [1/s].
+///     robot: The robot.
+///     dt: Time between two calls [s].
+///     gain: Scalar or `(nv,)` [1/s].
 ///
 /// Raises:
-///     InputError: an argument cannot be used; names it.
+///     InputError: Names the argument.
 ///
 /// Example:
-///     >>> import contactsense as cs
+///     >>> import contactsense as cs, numpy as np
 ///     >>> robot = cs.Robot.named("iiwa14")
+///     >>> q, v = np.full(7, 0.4), np.zeros(7)
+///     >>> tau = robot.inverse_dynamics(q, v, v)
+///     >>> tau[1] -= 2.0
 ///     >>> observer = cs.MomentumObserver(robot, dt=1e-3)
-///     >>> q, v = robot.neutral(), robot.velocity({})
-///     >>> observer.update(q, v, robot.inverse_dynamics(q, v, v)).shape
-///     (7,)
+///     >>> for _ in range(500):
+///     ...     external_torque = observer.update(q, v, tau)
+///     >>> round(float(external_torque[1]), 6)
+///     2.0
 #[pyclass(frozen, name = "MomentumObserver", module = "contactsense")]
 pub struct PyMomentumObserver {
     robot: Py<PyRobot>,
@@ -69,21 +73,21 @@ impl PyMomentumObserver {
         Ok(Self { robot: robot.unbind(), observer })
     }
 
-    /// One tick. The first call sets the initial momentum and returns zeros.
+    /// Takes in one tick. The first call sets the initial momentum and returns zeros.
     ///
     /// Args:
-    ///     q: configuration, `(nq,)`.
-    ///     v: velocity, `(nv,)` [rad/s, m/s], measured at the same instant.
-    ///     tau: motor torque, `(nv,)`, or `(nv - 6,)` for a floating base [Nm, N]; of a torque that is held over the steps
-    ///         before and after, their mean.
-    ///     dt: length of this step [s], where it differs from the constructor's.
-    ///     friction: torque of friction, shaped as `tau`, which is subtracted from it [Nm, N].
+    ///     q: Configuration, `(nq,)`.
+    ///     v: Velocity, `(nv,)` [rad/s; m/s for sliding joints], measured when `q` was.
+    ///     tau: Motor torque, `(nv,)`, or `(nv - 6,)` for a floating base [Nm; N for sliding joints]: at that instant, or
+    ///         better the mean of the torques held before and after it.
+    ///     dt: Time since the last call [s]; None for the constructor's.
+    ///     friction: Torque of friction, shaped as `tau` [Nm, N], which is subtracted from it; None for no friction.
     ///
     /// Returns:
-    ///     The external torque, `(nv,)` [Nm, N].
+    ///     The external torque, `(nv,)` [Nm; N for sliding joints and a base's linear part]; read-only.
     ///
     /// Raises:
-    ///     InputError: an argument cannot be used; names it. The state is then unchanged.
+    ///     InputError: Names the argument; the state is then unchanged.
     #[pyo3(signature = (q, v, tau, *, dt=None, friction=None))]
     fn update<'py>(
         &self,
@@ -106,12 +110,32 @@ impl PyMomentumObserver {
             sample = sample.dt(dt);
         }
         match observer.update(&sample) {
-            Ok(torque) => Ok(result(py, torque)),
+            Ok(torque) => Ok(numbers(py, torque)),
             Err(error) => Err(to_python(py, error)),
         }
     }
 
-    /// The robot observed.
+    /// Forgets all ticks; the next call is a first call.
+    fn reset(&self, py: Python<'_>) -> PyResult<()> {
+        self.sole(py)?.reset();
+        Ok(())
+    }
+
+    /// External torque of the last tick, `(nv,)` [Nm; N for sliding joints]; a read-only copy.
+    #[getter]
+    fn external_torque<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(numbers(py, self.sole(py)?.external_torque()))
+    }
+
+    /// Acceleration estimated at the last tick, `(nv,)` [rad/s^2; m/s^2 for sliding joints]; a read-only copy.
+    ///
+    /// Forward dynamics with the external torque (Vorndamme 2017, eq. 9).
+    #[getter]
+    fn acceleration<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(numbers(py, self.sole(py)?.acceleration()))
+    }
+
+    /// The robot.
     #[getter]
     fn robot(&self, py: Python<'_>) -> Py<PyRobot> {
         self.robot.clone_ref(py)
@@ -123,32 +147,22 @@ impl PyMomentumObserver {
         Ok(self.sole(py)?.dt())
     }
 
-    /// The gain, `(nv,)` [1/s].
+    /// The gain, `(nv,)` [1/s]; a read-only copy.
+    ///
+    /// A scalar or `(nv,)` may be set; the external torque goes on from where it is.
     #[getter]
     fn gain<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(result(py, self.sole(py)?.gain()))
+        Ok(numbers(py, self.sole(py)?.gain()))
+    }
+
+    #[setter]
+    fn set_gain(&self, gain: &Bound<'_, PyAny>) -> PyResult<()> {
+        let (py, gain) = (gain.py(), scalar_or_vector("gain", gain)?);
+        self.sole(py)?.set_gain(&gain).map_err(|error| to_python(py, error))
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let observer = self.sole(py)?;
-        Ok(format!("MomentumObserver('{}', dt={})", observer.robot().name(), observer.dt()))
-    }
-
-    /// Forgets all ticks; the next call is a first call.
-    fn reset(&self, py: Python<'_>) -> PyResult<()> {
-        self.sole(py)?.reset();
-        Ok(())
-    }
-
-    /// The external torque of the last tick, `(nv,)` [Nm, N].
-    #[getter]
-    fn external_torque<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(result(py, self.sole(py)?.external_torque()))
-    }
-
-    /// The acceleration estimated at the last tick, `(nv,)` [rad/s^2, m/s^2]: forward dynamics with the external torque.
-    #[getter]
-    fn acceleration<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(result(py, self.sole(py)?.acceleration()))
+        Ok(format!("MomentumObserver('{}', dt={:?})", observer.robot().name(), observer.dt()))
     }
 }

@@ -14,15 +14,13 @@ pub fn reserve<T>(vector: &mut Vec<T>, more: usize) -> PyResult<()> {
     vector.try_reserve(more).or_else(|_| vector.try_reserve_exact(more)).map_err(full)
 }
 
-/// An array that cannot be written: a change of it would change nothing else.
+/// The array, which nobody can write to any more; it must be fresh.
 pub fn read_only<T: Element, D: Dimension>(array: Bound<'_, PyArray<T, D>>) -> Bound<'_, PyArray<T, D>> {
-    array.readwrite().make_nonwriteable();
+    // Nobody else holds it, so that it can be borrowed.
+    if let Ok(array) = array.try_readwrite() {
+        array.make_nonwriteable();
+    }
     array
-}
-
-/// A `(n,)` array of a result.
-pub fn result<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArray1<f64>> {
-    read_only(PyArray1::from_slice(py, values))
 }
 
 /// A fresh `(rows, columns)` array.
@@ -51,15 +49,21 @@ pub fn pose<'py>(py: Python<'py>, pose: &contactsense::spatial::Pose) -> PyResul
     from_rows(py, [row(0), row(1), row(2), [0.0, 0.0, 0.0, 1.0]].into_iter())
 }
 
-/// A `(N,)` array of a result; NaN where there is no vector.
-pub fn vector<const N: usize>(py: Python<'_>, vector: Option<SVector<f64, N>>) -> Bound<'_, PyArray1<f64>> {
-    result(py, vector.unwrap_or_else(|| SVector::repeat(f64::NAN)).as_slice())
+/// A fresh `(n,)` array that cannot be written to.
+pub fn numbers<'py>(py: Python<'py>, numbers: &[f64]) -> Bound<'py, PyArray1<f64>> {
+    read_only(PyArray1::from_slice(py, numbers))
 }
 
-/// A `(n, 6)` array of wrenches of a result; NaN where there is none.
+/// A fresh `(N,)` array that cannot be written to; NaN where there is no vector.
+pub fn vector<const N: usize>(py: Python<'_>, vector: Option<SVector<f64, N>>) -> Bound<'_, PyArray1<f64>> {
+    numbers(py, vector.unwrap_or_else(|| SVector::repeat(f64::NAN)).as_slice())
+}
+
+/// A fresh `(n, 6)` array of wrenches that cannot be written to; NaN where there is none.
 pub fn wrench_rows<'py>(
     py: Python<'py>,
     wrenches: &[Option<Vector6<f64>>],
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    from_rows(py, wrenches.iter().map(|wrench| wrench.map_or([f64::NAN; 6], Into::into))).map(read_only)
+    let rows = wrenches.iter().map(|wrench| wrench.map_or([f64::NAN; 6], Into::into));
+    Ok(read_only(from_rows(py, rows)?))
 }

@@ -406,7 +406,7 @@ impl PyRobot {
                 ),
             ));
         }
-        Ok(PySurface { robot: this.0.clone(), link: index, owner: slf.clone().into_any().unbind() })
+        Ok(PySurface::new(slf.clone().unbind(), index))
     }
 
     fn __repr__(&self) -> String {

@@ -4,35 +4,39 @@ use contactsense::sensor::{Convention, ForceTorqueSensor};
 use contactsense::spatial::Pose;
 use numpy::PyArray2;
 use pyo3::prelude::*;
-use pyo3::types::PyString;
+use pyo3::types::{PyString, PyTuple};
 
 use crate::arguments::{number_if_any, shown, text};
 use crate::arrays::rows;
 use crate::description::placement;
 use crate::errors::{input, refused};
-use crate::plain::{reduced, Reduced};
+use crate::pickle::{reduced, Reduced};
 use crate::returned::{pose, read_only};
 
 const LAST_ROW: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
 
 /// A six-axis force/torque sensor where `link` joins its parent: `link` and all behind it load the sensor.
 ///
-/// A reading is (force, moment) about the origin of the sensor frame, in its axes [N, Nm].
+/// A reading is (force, moment) about the sensor frame's origin, in its axes [N, Nm]. Frozen; equal where all arguments
+/// are; can be pickled and copied.
 ///
 /// Args:
-///     name: its name, as results report it.
-///     link: name of the link that it joins to the link's parent.
-///     pose: the sensor frame in the link's, `(4, 4)`; the link frame itself by default.
-///     convention: "load", what the distal side exerts on the sensor (a free hand at rest: its weight), or "support", the
+///     name: Its name, unique among a robot's sensors.
+///     link: Name of the link that it joins to the link's parent.
+///     pose: The sensor frame in the link's, `(4, 4)` [m]; None for the link frame itself.
+///     convention: "load": what the distal side exerts on the sensor (a free hand at rest: its weight); "support": the
 ///         opposite.
 ///
 /// Raises:
-///     InputError: an argument cannot be used; names it.
+///     InputError: Names the argument.
 ///
 /// Example:
 ///     >>> import contactsense as cs
-///     >>> cs.ForceTorqueSensor("wrist", "iiwa_link_7").convention
-///     'load'
+///     >>> sensor = cs.ForceTorqueSensor("wrist", "link_7", convention="support")
+///     >>> sensor
+///     ForceTorqueSensor('wrist', 'link_7', convention='support')
+///     >>> sensor.pose.shape
+///     (4, 4)
 #[pyclass(frozen, eq, skip_from_py_object, name = "ForceTorqueSensor", module = "contactsense")]
 #[derive(PartialEq, Clone)]
 pub struct PyForceTorqueSensor(pub ForceTorqueSensor);
@@ -78,7 +82,7 @@ impl PyForceTorqueSensor {
         Ok(Self(sensor))
     }
 
-    /// Its name.
+    /// Name of the sensor.
     #[getter]
     fn name(&self) -> &str {
         &self.0.name
@@ -90,20 +94,16 @@ impl PyForceTorqueSensor {
         &self.0.link
     }
 
-    /// The sensor frame in the link's, `(4, 4)`; a copy.
+    /// The sensor frame in the link's, `(4, 4)` [m]; a read-only copy.
     #[getter]
     fn pose<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        pose(py, &self.0.pose).map(read_only)
+        Ok(read_only(pose(py, &self.0.pose)?))
     }
 
-    /// "load" or "support".
+    /// What a reading means: "load" or "support".
     #[getter]
     fn convention(&self) -> &'static str {
         self.0.convention.name()
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        reduced(py, "ForceTorqueSensor", &self.0)
     }
 
     fn __hash__(&self) -> u64 {
@@ -111,6 +111,10 @@ impl PyForceTorqueSensor {
         let mut hasher = DefaultHasher::new();
         (&self.0.name, &self.0.link, self.0.convention.name()).hash(&mut hasher);
         hasher.finish()
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, "ForceTorqueSensor", &self.0)
     }
 
     fn __repr__(&self) -> String {
@@ -129,6 +133,12 @@ pub fn sensors(object: &Bound<'_, PyAny>) -> PyResult<Vec<ForceTorqueSensor>> {
         found.push(item.cast::<PyForceTorqueSensor>().map_err(|error| refuse(error.into()))?.get().0.clone());
     }
     Ok(found)
+}
+
+/// The sensors as Python's.
+pub fn sensor_tuple<'py>(py: Python<'py>, sensors: &[ForceTorqueSensor]) -> PyResult<Bound<'py, PyTuple>> {
+    let wrap = |sensor: &ForceTorqueSensor| Bound::new(py, PyForceTorqueSensor(sensor.clone()));
+    PyTuple::new(py, sensors.iter().map(wrap).collect::<PyResult<Vec<_>>>()?)
 }
 
 /// A scalar, or rows of six.

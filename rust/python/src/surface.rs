@@ -1,11 +1,9 @@
 //! `Surface` and what its queries return.
 
-use std::sync::Arc;
-
-use contactsense::robot::{LinkIndex, Robot};
+use contactsense::robot::LinkIndex;
 use contactsense::surface::{RayHit, Surface};
 use nalgebra::Vector3;
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
@@ -13,8 +11,10 @@ use crate::arguments::whole;
 use crate::arrays::rows;
 use crate::columns::Columns;
 use crate::errors::{detached, input, to_python};
-use crate::plain::Reduced;
+use crate::once::Once;
+use crate::pickle::{arrays_alone, Reduced};
 use crate::returned::{from_rows, read_only, reserve};
+use crate::robot::PyRobot;
 use contactsense::Error;
 
 /// Samples of one call at most: they fit into memory.
@@ -27,182 +27,122 @@ const BLOCK: usize = 256;
 /// Hits of one ray that have room at first: more than a ray has of any robot's link.
 const RAY_HITS: usize = 64;
 
-/// The surface of one link, in the link frame.
+/// One link's surface, in the link frame.
 ///
-/// `Robot.surface` gives it.
+/// `Robot.surface` gives it. Frozen, shareable between threads; can be pickled and copied where its robot can.
 ///
 /// Example:
 ///     >>> import contactsense as cs
-///     >>> surface = cs.Robot.named("iiwa14").surface("iiwa_link_3")
-///     >>> surface.closest_points([[0.0, 0.0, 1.0]]).points.shape
-///     (1, 3)
+///     >>> robot = cs.Robot.named("iiwa14")
+///     >>> surface = robot.surface(robot.link_names[-1])
+///     >>> samples = surface.sample(100)
+///     >>> bool((surface.closest_points(samples.points).distances < 1e-9).all())
+///     True
 #[pyclass(frozen, name = "Surface", module = "contactsense")]
 pub struct PySurface {
-    pub robot: Arc<Robot>,
+    pub robot: Py<PyRobot>,
     pub link: LinkIndex,
-    /// The robot that it was asked of.
-    pub owner: Py<PyAny>,
+    vertices: Once<PyArray2<f64>>,
+    triangles: Once<PyArray2<i64>>,
 }
 
-/// Nearest points of a surface, one row per query.
+/// Nearest points, one row a query; all arrays are read-only.
+///
+/// Frozen; can be pickled and copied.
+///
+/// Example:
+///     >>> import contactsense as cs
+///     >>> robot = cs.Robot.named("iiwa14")
+///     >>> surface = robot.surface(robot.link_names[-1])
+///     >>> surface.closest_points([[0.0, 0.0, 1.0], [0.0, 0.0, 2.0]]).points.shape
+///     (2, 3)
 #[pyclass(frozen, get_all, module = "contactsense")]
 pub struct ClosestPoints {
-    /// Points, `(n, 3)`, link frame [m].
+    /// Nearest point of each query, `(n, 3)`, link frame [m].
     points: Py<PyArray2<f64>>,
-    /// Outward normals, `(n, 3)`, link frame.
+    /// Outward unit normals there, `(n, 3)`, link frame.
     normals: Py<PyArray2<f64>>,
-    /// Distances, `(n,)`, unsigned [m].
+    /// Unsigned distances, `(n,)` [m].
     distances: Py<PyArray1<f64>>,
-    /// Triangles, `(n,)`: rows of `Surface.triangles`; -1 on an exact primitive.
+    /// Rows of `Surface.triangles`, `(n,)`; -1 on an exact primitive.
     triangles: Py<PyArray1<i64>>,
 }
 
-/// All hits of a batch of rays, sorted by distance per ray.
+/// Every intersection of a batch of rays, sorted per ray; all arrays are read-only.
+///
+/// Frozen; can be pickled and copied.
+///
+/// Example:
+///     >>> import contactsense as cs
+///     >>> robot = cs.Robot.named("iiwa14")
+///     >>> surface = robot.surface(robot.link_names[-1])
+///     >>> hits = surface.cast_rays([[0.0, 0.0, 1.0]], [[0.0, 0.0, -1.0]])
+///     >>> len(hits.ray) % 2
+///     0
 #[pyclass(frozen, get_all, module = "contactsense")]
 pub struct RayHits {
-    /// Rays, `(k,)`: rows of the query.
+    /// Row of the query, `(k,)`.
     ray: Py<PyArray1<i64>>,
-    /// Distances from the origin, `(k,)` [m].
+    /// Distance from the ray's origin, `(k,)` [m].
     distance: Py<PyArray1<f64>>,
-    /// Points, `(k, 3)`, link frame [m].
+    /// Point of intersection, `(k, 3)`, link frame [m].
     point: Py<PyArray2<f64>>,
-    /// Outward normals, `(k, 3)`, link frame.
+    /// Outward unit normal there, `(k, 3)`, link frame.
     normal: Py<PyArray2<f64>>,
-    /// Triangles, `(k,)`: rows of `Surface.triangles`; -1 on an exact primitive.
+    /// Row of `Surface.triangles`, `(k,)`; -1 on an exact primitive.
     triangle: Py<PyArray1<i64>>,
 }
 
-/// Random points of a surface.
+/// Random points of a surface; all arrays are read-only.
+///
+/// Frozen; can be pickled and copied.
+///
+/// Example:
+///     >>> import contactsense as cs
+///     >>> robot = cs.Robot.named("iiwa14")
+///     >>> surface = robot.surface(robot.link_names[-1])
+///     >>> surface.sample(100, seed=1).points.shape
+///     (100, 3)
 #[pyclass(frozen, get_all, module = "contactsense")]
 pub struct SurfaceSamples {
     /// Points, `(n, 3)`, link frame [m].
     points: Py<PyArray2<f64>>,
-    /// Outward normals, `(n, 3)`, link frame.
+    /// Outward unit normals there, `(n, 3)`, link frame.
     normals: Py<PyArray2<f64>>,
-    /// Triangles, `(n,)`: rows of `Surface.triangles`; -1 on an exact primitive.
+    /// Rows of `Surface.triangles`, `(n,)`; -1 on an exact primitive.
     triangles: Py<PyArray1<i64>>,
 }
 
-#[pymethods]
-impl ClosestPoints {
-    #[new]
-    fn new(
-        points: Bound<'_, PyArray2<f64>>,
-        normals: Bound<'_, PyArray2<f64>>,
-        distances: Bound<'_, PyArray1<f64>>,
-        triangles: Bound<'_, PyArray1<i64>>,
-    ) -> Self {
-        Self {
-            points: read_only(points).unbind(),
-            normals: read_only(normals).unbind(),
-            distances: read_only(distances).unbind(),
-            triangles: read_only(triangles).unbind(),
-        }
-    }
-
-    fn __len__(&self, py: Python<'_>) -> usize {
-        self.distances.bind(py).len()
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        let names = ["points", "normals", "distances", "triangles"];
-        let columns = names.iter().map(|name| slf.getattr(*name)).collect::<PyResult<Vec<_>>>()?;
-        Ok((slf.get_type().into_any(), PyTuple::new(slf.py(), columns)?))
-    }
-
-    fn __repr__(&self, py: Python<'_>) -> String {
-        format!("ClosestPoints({} points)", self.__len__(py))
-    }
-}
-
-#[pymethods]
-impl RayHits {
-    #[new]
-    fn new(
-        ray: Bound<'_, PyArray1<i64>>,
-        distance: Bound<'_, PyArray1<f64>>,
-        point: Bound<'_, PyArray2<f64>>,
-        normal: Bound<'_, PyArray2<f64>>,
-        triangle: Bound<'_, PyArray1<i64>>,
-    ) -> Self {
-        Self {
-            ray: read_only(ray).unbind(),
-            distance: read_only(distance).unbind(),
-            point: read_only(point).unbind(),
-            normal: read_only(normal).unbind(),
-            triangle: read_only(triangle).unbind(),
-        }
-    }
-
-    fn __len__(&self, py: Python<'_>) -> usize {
-        self.distance.bind(py).len()
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        let names = ["ray", "distance", "point", "normal", "triangle"];
-        let columns = names.iter().map(|name| slf.getattr(*name)).collect::<PyResult<Vec<_>>>()?;
-        Ok((slf.get_type().into_any(), PyTuple::new(slf.py(), columns)?))
-    }
-
-    fn __repr__(&self, py: Python<'_>) -> String {
-        format!("RayHits({} hits)", self.__len__(py))
-    }
-}
-
-#[pymethods]
-impl SurfaceSamples {
-    #[new]
-    fn new(
-        points: Bound<'_, PyArray2<f64>>,
-        normals: Bound<'_, PyArray2<f64>>,
-        triangles: Bound<'_, PyArray1<i64>>,
-    ) -> Self {
-        Self {
-            points: read_only(points).unbind(),
-            normals: read_only(normals).unbind(),
-            triangles: read_only(triangles).unbind(),
-        }
-    }
-
-    fn __len__(&self, py: Python<'_>) -> usize {
-        self.triangles.bind(py).len()
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        let names = ["points", "normals", "triangles"];
-        let columns = names.iter().map(|name| slf.getattr(*name)).collect::<PyResult<Vec<_>>>()?;
-        Ok((slf.get_type().into_any(), PyTuple::new(slf.py(), columns)?))
-    }
-
-    fn __repr__(&self, py: Python<'_>) -> String {
-        format!("SurfaceSamples({} points)", self.__len__(py))
-    }
-}
-
 impl PySurface {
+    pub fn new(robot: Py<PyRobot>, link: LinkIndex) -> Self {
+        Self { robot, link, vertices: Once::default(), triangles: Once::default() }
+    }
+
     fn core(&self, py: Python<'_>) -> PyResult<&Surface> {
-        let surface = self.robot[self.link].surface.as_deref();
+        let surface = self.robot.get().0[self.link].surface.as_deref();
         surface.ok_or_else(|| to_python(py, Error::geometry("this link has no surface")))
     }
 }
 
 #[pymethods]
 impl PySurface {
-    /// Vertices, `(n, 3)`, link frame [m]; of exact primitives a tessellation, for display.
+    /// Vertices, `(n, 3)`, link frame [m]; of exact primitives a tessellation, for display; read-only.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        from_rows(py, self.core(py)?.vertices().iter().copied()).map(read_only)
+        self.vertices.get(py, || Ok(read_only(from_rows(py, self.core(py)?.vertices().iter().copied())?)))
     }
 
-    /// Vertex indices, `(m, 3)`, counter-clockwise seen from outside.
+    /// Vertex indices, `(m, 3)`, counter-clockwise seen from outside; read-only.
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
-        let triangles = self.core(py)?.triangles();
-        let flat: Vec<i64> = triangles.iter().flatten().map(|index| i64::from(*index)).collect();
-        Ok(read_only(PyArray1::from_vec(py, flat).reshape([triangles.len(), 3])?))
+        self.triangles.get(py, || {
+            let triangles = self.core(py)?.triangles();
+            let flat: Vec<i64> = triangles.iter().flatten().map(|index| i64::from(*index)).collect();
+            Ok(read_only(PyArray1::from_vec(py, flat).reshape([triangles.len(), 3])?))
+        })
     }
 
-    /// Sum of the areas of the parts [m^2]; where parts overlap, both count.
+    /// Sum of the parts' areas [m^2]; where parts overlap, both count.
     #[getter]
     fn area(&self, py: Python<'_>) -> PyResult<f64> {
         Ok(self.core(py)?.area())
@@ -214,31 +154,17 @@ impl PySurface {
         Ok(self.core(py)?.watertight())
     }
 
-    /// With its robot.
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let ask = self.owner.bind(py).getattr("surface")?;
-        Ok((ask, PyTuple::new(py, [&self.robot[self.link].name])?))
-    }
-
-    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let surface = self.core(py)?;
-        let (link, closed) =
-            (&self.robot[self.link].name, if surface.watertight() { "True" } else { "False" });
-        let (count, area) = (surface.triangles().len(), surface.area());
-        Ok(format!("Surface('{link}', {count} triangles, area={area:.4} m^2, watertight={closed})"))
-    }
-
-    /// The nearest surface point of each query, over all parts of the link.
+    /// The nearest surface point of each query: the minimum over the link's parts.
     ///
     /// Args:
-    ///     points: `(n, 3)`, link frame [m].
+    ///     points: Queries, `(n, 3)`, or one `(3,)`, link frame [m].
     ///
     /// Returns:
-    ///     `ClosestPoints`; distances are unsigned.
+    ///     One row a query; distances are unsigned.
     ///
     /// Raises:
-    ///     InputError: the argument cannot be used.
-    ///     MemoryError: the answer does not fit into memory.
+    ///     InputError: Names the argument.
+    ///     MemoryError: The answer does not fit into memory.
     fn closest_points(&self, py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<ClosestPoints> {
         let surface = self.core(py)?;
         let points = rows::<3>("points", points)?;
@@ -264,20 +190,21 @@ impl PySurface {
         })
     }
 
-    /// All hits of each ray, sorted by distance per ray.
+    /// Every intersection of each ray, sorted by distance per ray.
     ///
-    /// It is watertight: a closed mesh is entered as often as left. Hits inside another closed part of the link are left out.
+    /// Watertight: a closed mesh is entered as often as left. Intersections inside another closed part of the link are
+    /// left out.
     ///
     /// Args:
-    ///     origins: `(n, 3)`, link frame [m].
-    ///     directions: `(n, 3)`, link frame; they need not be unit vectors.
+    ///     origins: Where the rays begin, `(n, 3)`, or one `(3,)`, link frame [m].
+    ///     directions: Of the rays, as many, link frame; they need not be unit vectors.
     ///
     /// Returns:
-    ///     `RayHits`; distances are in metres.
+    ///     One row an intersection; distances are in metres.
     ///
     /// Raises:
-    ///     InputError: an argument cannot be used; names it.
-    ///     MemoryError: the answer does not fit into memory.
+    ///     InputError: Names the argument.
+    ///     MemoryError: The answer does not fit into memory.
     fn cast_rays(
         &self,
         py: Python<'_>,
@@ -330,18 +257,18 @@ impl PySurface {
         })
     }
 
-    /// Random points, uniform by area over the exposed surface.
+    /// Draws random points, uniform by area over the exposed surface; the same for the same seed.
     ///
     /// Args:
-    ///     n: number of points. A larger number appends to the same points.
-    ///     seed: the same seed gives the same points.
+    ///     n: How many; a larger number appends to the same points.
+    ///     seed: A whole number.
     ///
     /// Returns:
-    ///     `SurfaceSamples`.
+    ///     One row a point, link frame.
     ///
     /// Raises:
-    ///     InputError: an argument cannot be used; names it.
-    ///     MemoryError: the points do not fit into memory.
+    ///     InputError: Names the argument.
+    ///     MemoryError: The points do not fit into memory.
     #[pyo3(signature = (n, seed=None), text_signature = "($self, n, seed=0)")]
     fn sample(
         &self,
@@ -368,9 +295,23 @@ impl PySurface {
         let (points, normals, triangles) = found.arrays(py)?;
         Ok(SurfaceSamples { points, normals, triangles })
     }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let link = &self.robot.get().0[self.link].name;
+        Ok((self.robot.bind(py).getattr("surface")?, PyTuple::new(py, [link])?))
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let (name, core) = (&self.robot.get().0[self.link].name, self.core(py)?);
+        Ok(format!("Surface('{name}', {} triangles, area={:.4})", core.triangles().len(), core.area()))
+    }
 }
 
-/// Appends every hit of one ray.
+arrays_alone!(ClosestPoints, "ClosestPoints", points, normals, distances, triangles);
+arrays_alone!(RayHits, "RayHits", ray, distance, point, normal, triangle);
+arrays_alone!(SurfaceSamples, "SurfaceSamples", points, normals, triangles);
+
+/// Appends every intersection of one ray.
 fn cast(surface: &Surface, origin: &[f64; 3], direction: &[f64; 3], hits: &mut Vec<RayHit>) -> PyResult<()> {
     // Scaled first, so that no square overflows.
     let direction = Vector3::from(*direction);

@@ -113,10 +113,16 @@ impl Detector {
         &self.links
     }
 
-    /// Replaces both thresholds by checked ones; signals that are on stay on for their hold time.
+    /// Other thresholds, as checked by [`super::check_threshold`] and [`check_wrench_threshold`]; what is on stays on for
+    /// its time.
     pub fn set_thresholds(&mut self, threshold: Vec<f64>, wrench_threshold: Vec<Vector6<f64>>) {
         self.joints.set_threshold(threshold);
         self.wrench_threshold = wrench_threshold;
+    }
+
+    /// The thresholds on each sensor's wrench (N, Nm).
+    pub fn wrench_threshold(&self) -> &[Vector6<f64>] {
+        &self.wrench_threshold
     }
 
     /// The thresholds `(nv,)`.

@@ -61,14 +61,14 @@ impl Gate {
         signals.into_iter().zip(&self.threshold).any(|(signal, threshold)| is_over(signal, *threshold))
     }
 
+    /// Other checked thresholds, as many; what is on stays on for its time.
+    pub fn set_threshold(&mut self, threshold: Vec<f64>) {
+        self.threshold = threshold;
+    }
+
     /// The thresholds.
     pub fn threshold(&self) -> &[f64] {
         &self.threshold
-    }
-
-    /// Replaces the thresholds by as many checked ones; what is on stays on for its hold time.
-    pub fn set_threshold(&mut self, threshold: Vec<f64>) {
-        self.threshold = threshold;
     }
 
     /// Turns all signals off.

@@ -33,13 +33,6 @@ pub(crate) struct ReleaseRule {
     pub is_force: Vec<bool>,
 }
 
-impl ReleaseRule {
-    /// Greatest norm of a remainder's torques (Nm) and of its forces (N).
-    fn largest_remainder(&self) -> [f64; 2] {
-        norms(self.threshold.iter().copied(), &self.is_force).map(|norm| LARGEST_REMAINDER * norm)
-    }
-}
-
 /// Watches the torque during a contact for its fall to a small remainder that stands still.
 #[derive(Debug, Clone)]
 pub(crate) struct ReleaseDetector {
@@ -60,7 +53,7 @@ impl ReleaseDetector {
     pub fn new(rule: ReleaseRule) -> Self {
         let nv = rule.threshold.len();
         Self {
-            limit: rule.largest_remainder(),
+            limit: limit(&rule),
             mean: vec![0.0; nv],
             samples: 0,
             still_time: 0.0,
@@ -70,9 +63,9 @@ impl ReleaseDetector {
         }
     }
 
-    /// Replaces the rule; what was seen of this contact stays.
+    /// Another rule; what is known of the contact so far stays.
     pub fn set_rule(&mut self, rule: ReleaseRule) {
-        self.limit = rule.largest_remainder();
+        self.limit = limit(&rule);
         self.rule = rule;
     }
 
@@ -150,6 +143,11 @@ impl ReleaseDetector {
         self.peak.fill(0.0);
         self.greatest = [0.0; 2];
     }
+}
+
+/// Greatest norm of a remainder's torques (Nm) and of its forces (N).
+fn limit(rule: &ReleaseRule) -> [f64; 2] {
+    norms(rule.threshold.iter().copied(), &rule.is_force).map(|norm| LARGEST_REMAINDER * norm)
 }
 
 /// Norm of the torques (Nm), and of the forces (N).

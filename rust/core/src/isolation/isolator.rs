@@ -95,6 +95,16 @@ pub struct ContactIsolator {
 }
 
 impl ContactIsolator {
+    /// The thresholds on torques `(nv,)` (Nm, N).
+    pub fn torque_threshold(&self) -> &[f64] {
+        &self.threshold
+    }
+
+    /// The thresholds on each sensor's wrench (N, Nm).
+    pub fn wrench_threshold(&self) -> &[Vector6<f64>] {
+        &self.wrench_threshold
+    }
+
     /// An isolator for a robot.
     ///
     /// # Errors

@@ -97,14 +97,14 @@ impl BiasTracker {
         torque.iter().zip(&self.limit).all(|(torque, limit)| torque.abs() <= *limit)
     }
 
+    /// Another greatest bias of each joint (Nm, N); the bias is what it was until it follows a torque again.
+    pub fn set_limit(&mut self, limit: Vec<f64>) {
+        self.limit = limit;
+    }
+
     /// Takes a torque for the bias at once.
     pub fn set(&mut self, bias: &[f64]) {
         self.bias.copy_from_slice(bias);
-    }
-
-    /// Replaces the greatest bias of each joint (Nm, N).
-    pub fn set_limit(&mut self, limit: Vec<f64>) {
-        self.limit = limit;
     }
 
     /// The bias `(nv,)`.

@@ -43,14 +43,14 @@ use crate::sensor::{SensorIndex, SensorTree};
 #[derive(Debug, Clone)]
 pub struct ContactMonitor {
     pub(super) robot: Arc<Robot>,
-    pub(super) options: MonitorOptions,
-    clock: SampleClock,
+    pub(super) clock: SampleClock,
     pub(super) observer: MomentumObserver,
     pub(super) bias: Option<BiasTracker>,
     pub(super) release: ReleaseDetector,
     pub(super) detector: Detector,
     pub(super) isolator: ContactIsolator,
-    sensing: Option<Sensing>,
+    pub(super) sensing: Option<Sensing>,
+    pub(super) options: MonitorOptions,
     report: ContactReport,
 }
 
@@ -61,8 +61,8 @@ impl ContactMonitor {
     /// [`crate::Error::Input`] names the option.
     pub fn new(robot: Arc<Robot>, options: &MonitorOptions) -> Result<Self> {
         let nv = robot.nv();
-        let observer = MomentumObserver::new(robot.clone(), options.dt, &options.observer_gain)
-            .map_err(|error| error.for_argument("gain", "observer_gain"))?;
+        let observer =
+            MomentumObserver::new(robot.clone(), options.dt, &options.observer_gain).map_err(of_observer)?;
         let tree = SensorTree::new(&robot, &options.isolation.sensors)?;
         let (threshold, _) = options.isolation.threshold_and_noise(&robot)?;
         let detector = Detector::new(
@@ -86,7 +86,6 @@ impl ContactMonitor {
         let isolator = ContactIsolator::new(robot.clone(), &options.isolation)?;
         let sensors = options.isolation.sensors.len();
         let mut monitor = Self {
-            options: options.clone(),
             clock: SampleClock::new(options.dt),
             observer,
             detector,
@@ -104,6 +103,7 @@ impl ContactMonitor {
                 ..ContactReport::default()
             },
             isolator,
+            options: options.clone(),
             robot,
         };
         monitor.finish_report();
@@ -293,6 +293,14 @@ impl ContactMonitor {
     /// The robot watched.
     pub fn robot(&self) -> &Arc<Robot> {
         &self.robot
+    }
+}
+
+/// An error of the observer's gain, by its name here.
+pub(super) fn of_observer(error: Error) -> Error {
+    match error {
+        Error::Input { argument, problem } if argument == "gain" => Error::input("observer_gain", problem),
+        other => other,
     }
 }
 

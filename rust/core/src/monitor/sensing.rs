@@ -56,10 +56,9 @@ impl Sensing {
                 behind_wanted[robot.velocity_range(body)].fill(true);
             }
         }
-        let slowest = gain.iter().copied().fold(f64::INFINITY, f64::min);
         Ok(Self {
             wrenches: WrenchObserver::new(robot.clone(), &tree, gain, wrench_gain, dt)?,
-            settling_time: SETTLING / slowest,
+            settling_time: settling_time(gain),
             unsettled: vec![0.0; tree.len()],
             settled: vec![true; tree.len()],
             wanted_torque: vec![0.0; gain.len()],
@@ -70,6 +69,13 @@ impl Sensing {
             wanted: is_wanted,
             tree,
         })
+    }
+
+    /// Other gains, as in [`Sensing::new`].
+    pub fn set_gain(&mut self, gain: &[f64], wrench_gain: Option<f64>) -> Result<()> {
+        self.wrenches.set_gain(gain, wrench_gain)?;
+        self.settling_time = settling_time(gain);
+        Ok(())
     }
 
     /// A step of nominally `dt` (s), after the observer's, with checked readings and the joints' thresholds `(nv,)`.
@@ -207,4 +213,9 @@ impl Sensing {
             }
         }
     }
+}
+
+/// How long a wanted sensor stays untrusted after a gap (s), with the observer's `gain` `(nv,)` (1/s).
+fn settling_time(gain: &[f64]) -> f64 {
+    SETTLING / gain.iter().copied().fold(f64::INFINITY, f64::min)
 }

@@ -1,91 +1,103 @@
-//! Settings that can be changed between two ticks; bias and external torque stay as they are.
+//! Thresholds and gains of a monitor that are read and changed while it runs: bias, observer and signals stay.
 
-use super::contact_monitor::ContactMonitor;
-use super::options::MonitorOptions;
-use crate::detection::{check_threshold, check_wrench_threshold};
-use crate::error::Result;
-use crate::isolation::ContactIsolator;
+use nalgebra::Vector6;
+
+use super::contact_monitor::of_observer;
+use super::{ContactMonitor, MonitorOptions};
+use crate::detection::check_wrench_threshold;
+use crate::error::{Error, Result};
+use crate::isolation::{ContactIsolator, IsolatorOptions};
 use crate::sensor::SensorTree;
 
 impl ContactMonitor {
-    /// The settings in use.
-    pub fn options(&self) -> &MonitorOptions {
-        &self.options
-    }
-
-    /// The torque thresholds, one per velocity variable (Nm, N).
+    /// The thresholds on torques `(nv,)` (Nm, N).
     pub fn torque_threshold(&self) -> &[f64] {
         self.detector.threshold()
     }
 
-    /// Sets the torque threshold (Nm, N), per velocity variable or one for all.
+    /// Other thresholds on torques, one for all velocity variables or one for each (Nm, N). The greatest bias follows them.
     ///
-    /// A signal that is on stays on for its hold time. The greatest bias follows, as it is counted in thresholds.
-    ///
-    /// ```
-    /// use std::sync::Arc;
-    ///
-    /// use contactsense::monitor::{ContactMonitor, MonitorOptions};
-    /// use contactsense::robot::Robot;
-    ///
-    /// let mut monitor = ContactMonitor::new(Arc::new(Robot::example_arm()), &MonitorOptions::new(1e-3))?;
-    /// monitor.set_torque_threshold(&[2.0])?;
-    /// assert!(monitor.set_torque_threshold(&[-1.0]).is_err());
-    /// assert_eq!(monitor.torque_threshold(), [2.0; 7]);
-    /// # Ok::<(), contactsense::Error>(())
-    /// ```
+    /// Not for the control loop: it allocates.
     ///
     /// # Errors
-    /// [`crate::Error::Input`] where a threshold is not positive and finite, or their number is wrong; nothing is then
-    /// changed.
+    /// [`Error::Input`] as in [`ContactMonitor::new`]; nothing is then changed.
     pub fn set_torque_threshold(&mut self, threshold: &[f64]) -> Result<()> {
-        let mut options = self.options.clone();
-        options.isolation.torque_threshold = Some(threshold.to_vec());
-        self.set_thresholds(options)
+        let isolation =
+            IsolatorOptions { torque_threshold: Some(threshold.to_vec()), ..self.options.isolation.clone() };
+        self.set_isolation(isolation)
     }
 
-    /// Sets the threshold on the sensors' external wrenches: one number for all (N, Nm), six, or six for each sensor.
+    /// The thresholds on each sensor's wrench (N, Nm).
+    pub fn wrench_threshold(&self) -> &[Vector6<f64>] {
+        self.detector.wrench_threshold()
+    }
+
+    /// Other thresholds on wrenches: one number, 6 for every sensor, or 6 times the number of sensors (N, Nm).
+    ///
+    /// Not for the control loop: it allocates.
     ///
     /// # Errors
-    /// As for [`set_torque_threshold`](Self::set_torque_threshold).
+    /// [`Error::Input`] as in [`ContactMonitor::new`]; nothing is then changed.
     pub fn set_wrench_threshold(&mut self, threshold: &[f64]) -> Result<()> {
-        let mut options = self.options.clone();
-        options.isolation.wrench_threshold = threshold.to_vec();
-        self.set_thresholds(options)
+        let isolation =
+            IsolatorOptions { wrench_threshold: threshold.to_vec(), ..self.options.isolation.clone() };
+        self.set_isolation(isolation)
     }
 
-    /// Sets the observer's gain (1/s), per velocity variable or one for all; the external torque goes on from where it is.
-    ///
-    /// The low-pass on the sensors' wrenches keeps its gain.
-    ///
-    /// # Errors
-    /// [`crate::Error::Input`] where a gain is not positive and finite, or their number is wrong.
-    pub fn set_observer_gain(&mut self, gain: &[f64]) -> Result<()> {
-        self.observer.set_gain(gain).map_err(|error| error.for_argument("gain", "observer_gain"))?;
-        self.options.observer_gain = gain.to_vec();
+    /// Everything is checked and made before anything is changed.
+    fn set_isolation(&mut self, isolation: IsolatorOptions) -> Result<()> {
+        let options = MonitorOptions { isolation, ..self.options.clone() };
+        let (threshold, _) = options.isolation.threshold_and_noise(&self.robot)?;
+        let tree = SensorTree::new(&self.robot, &options.isolation.sensors)?;
+        let wrench_threshold = check_wrench_threshold(&tree, &options.isolation.wrench_threshold)?;
+        let greatest_bias = options.greatest_bias(&threshold)?;
+        let rule = options.release_rule(&self.robot, &threshold)?;
+        self.isolator = ContactIsolator::new(self.robot.clone(), &options.isolation)?;
+        if let Some(bias) = &mut self.bias {
+            bias.set_limit(greatest_bias);
+        }
+        self.release.set_rule(rule);
+        self.detector.set_thresholds(threshold, wrench_threshold);
+        self.options = options;
         Ok(())
     }
 
-    /// The observer's gain, one per velocity variable (1/s).
+    /// The observer's gain `(nv,)` (1/s).
     pub fn observer_gain(&self) -> &[f64] {
         self.observer.gain()
     }
 
-    fn set_thresholds(&mut self, options: MonitorOptions) -> Result<()> {
-        // Everything that may be refused first.
-        let (threshold, _) = options.isolation.threshold_and_noise(&self.robot)?;
-        let threshold = check_threshold(&self.robot, &threshold)?;
-        let tree = SensorTree::new(&self.robot, &options.isolation.sensors)?;
-        let wrench_threshold = check_wrench_threshold(&tree, &options.isolation.wrench_threshold)?;
-        let rule = options.release_rule(&self.robot, &threshold)?;
-        let limit = options.greatest_bias(&threshold)?;
-        self.isolator = ContactIsolator::new(self.robot.clone(), &options.isolation)?;
-        self.detector.set_thresholds(threshold, wrench_threshold);
-        self.release.set_rule(rule);
-        if let Some(bias) = &mut self.bias {
-            bias.set_limit(limit);
+    /// Another gain of the observer, one for all velocity variables or one for each (1/s). The external torque goes on from
+    /// where it is; the gain of the wrenches' low-pass follows, unless the options give it.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where a gain is not positive and finite, or their number is wrong; nothing is then changed.
+    pub fn set_observer_gain(&mut self, gain: &[f64]) -> Result<()> {
+        self.observer.set_gain(gain).map_err(of_observer)?;
+        self.options.observer_gain = gain.to_vec();
+        self.follow_gains()
+    }
+
+    /// The gain of the low-pass on the sensors' external wrenches (1/s), infinite for no low-pass; none without sensors.
+    pub fn wrench_gain(&self) -> Option<f64> {
+        self.sensing.as_ref().map(|sensing| sensing.wrenches().wrench_gain())
+    }
+
+    /// Another gain of that low-pass, as [`MonitorOptions::wrench_gain`]; the wrenches go on from where they are.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where it is not positive; nothing is then changed.
+    pub fn set_wrench_gain(&mut self, gain: Option<f64>) -> Result<()> {
+        if let Some(gain) = gain.filter(|gain| gain.is_nan() || *gain <= 0.0) {
+            return Err(Error::input("wrench_gain", format!("must be positive [1/s], not {gain}")));
         }
-        self.options = options;
-        Ok(())
+        self.options.wrench_gain = gain;
+        self.follow_gains()
+    }
+
+    fn follow_gains(&mut self) -> Result<()> {
+        let Self { sensing, observer, options, .. } = self;
+        let Some(sensing) = sensing else { return Ok(()) };
+        sensing.set_gain(observer.gain(), options.wrench_gain)
     }
 }

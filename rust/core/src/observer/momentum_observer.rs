@@ -65,7 +65,7 @@ impl MomentumObserver {
     pub fn new(robot: Arc<Robot>, dt: f64, gain: &[f64]) -> Result<Self> {
         check_time_step(dt)?;
         let nv = robot.nv();
-        let gain = checked_gain(&robot, gain)?;
+        let gain = check_gain(&robot, gain)?;
         let zeros = vec![0.0; nv];
         Ok(Self {
             dt,
@@ -165,25 +165,25 @@ impl MomentumObserver {
         &self.acceleration
     }
 
-    /// The gain `(nv,)` (1/s).
-    pub fn gain(&self) -> &[f64] {
-        &self.gain
-    }
-
-    /// Time between two calls that is assumed where a sample has none (s).
+    /// Time between two calls that is assumed where none is given (s).
     pub fn dt(&self) -> f64 {
         self.dt
     }
 
-    /// Sets the gain (1/s), per velocity variable or one for all; the estimate goes on from where it is.
+    /// Another gain from the next step on, one for all velocity variables or one for each (1/s). The external torque goes on
+    /// from where it is.
     ///
     /// # Errors
-    /// [`Error::Input`] where a gain is not positive and finite, or their number is wrong.
+    /// [`Error::Input`] where a gain is not positive and finite, or their number is wrong; nothing is then changed.
     pub fn set_gain(&mut self, gain: &[f64]) -> Result<()> {
-        let gain = checked_gain(&self.robot, gain)?;
-        self.decay = gain.iter().map(|gain| (-gain * self.dt).exp()).collect();
-        self.gain = gain;
+        self.gain = check_gain(&self.robot, gain)?;
+        self.decay = self.gain.iter().map(|gain| (-gain * self.dt).exp()).collect();
         Ok(())
+    }
+
+    /// The gain `(nv,)` (1/s).
+    pub fn gain(&self) -> &[f64] {
+        &self.gain
     }
 
     /// Poses and velocities of the last step.
@@ -197,7 +197,8 @@ impl MomentumObserver {
     }
 }
 
-fn checked_gain(robot: &Robot, gain: &[f64]) -> Result<Vec<f64>> {
+/// A gain per velocity variable (1/s).
+fn check_gain(robot: &Robot, gain: &[f64]) -> Result<Vec<f64>> {
     let gain = robot.per_velocity("gain", gain)?;
     if gain.iter().any(|gain| *gain <= 0.0) {
         return Err(Error::input("gain", "must be positive [1/s]"));

@@ -72,12 +72,7 @@ impl WrenchObserver {
         wrench_gain: Option<f64>,
         dt: f64,
     ) -> Result<Self> {
-        let slowest = gain.iter().copied().fold(f64::INFINITY, f64::min);
-        let default = if slowest * dt < FAST { slowest } else { f64::INFINITY };
-        let wrench_gain = wrench_gain.unwrap_or(default);
-        if wrench_gain.is_nan() || wrench_gain <= 0.0 {
-            return Err(Error::input("wrench_gain", format!("must be positive [1/s], not {wrench_gain}")));
-        }
+        let wrench_gain = check_wrench_gain(gain, wrench_gain, dt)?;
         let zeros = vec![Spatial::zeros(); tree.len()];
         Ok(Self {
             parts: distal_parts(&robot, tree),
@@ -137,6 +132,24 @@ impl WrenchObserver {
         }
         self.before.origin = kinematics.origin;
         self.before.bodies.copy_from_slice(&kinematics.bodies);
+    }
+
+    /// Other gains from the next step on, as in [`WrenchObserver::new`]; estimates go on from where they are.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where `wrench_gain` is not positive; nothing is then changed.
+    pub fn set_gain(&mut self, gain: &[f64], wrench_gain: Option<f64>) -> Result<()> {
+        self.wrench_gain = check_wrench_gain(gain, wrench_gain, self.dt)?;
+        self.gain.copy_from_slice(gain);
+        // No step has this length: the decays are computed anew.
+        self.decay_step = f64::NAN;
+        self.set_step(self.dt);
+        Ok(())
+    }
+
+    /// Of the wrenches' low-pass (1/s); infinite without one.
+    pub fn wrench_gain(&self) -> f64 {
+        self.wrench_gain
     }
 
     /// Decays for a step of `length` (s), kept for the next of the same length.
@@ -253,4 +266,15 @@ fn load(
     let [force, moment] = tree.exerted(kinematics, sensor, reading);
     let at = tree.position(kinematics, sensor) + shift;
     stack(&force, &(moment + at.cross(&force)))
+}
+
+/// The gain of the wrenches' low-pass (1/s), by default from the momentum observer's `gain` and time step `dt` (s).
+fn check_wrench_gain(gain: &[f64], wrench_gain: Option<f64>, dt: f64) -> Result<f64> {
+    let slowest = gain.iter().copied().fold(f64::INFINITY, f64::min);
+    let default = if slowest * dt < FAST { slowest } else { f64::INFINITY };
+    let wrench_gain = wrench_gain.unwrap_or(default);
+    if wrench_gain.is_nan() || wrench_gain <= 0.0 {
+        return Err(Error::input("wrench_gain", format!("must be positive [1/s], not {wrench_gain}")));
+    }
+    Ok(wrench_gain)
 }

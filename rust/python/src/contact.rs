@@ -1,0 +1,342 @@
+//! `Candidate`, `Contact` and `Isolation`.
+
+use std::sync::Arc;
+
+use contactsense::isolation::{Candidate, Contact, Isolation};
+use contactsense::sensor::JOINT_TORQUES;
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::names::Names;
+use crate::once::Once;
+use crate::pickle::{plain_dict, reduced, Reduced};
+use crate::returned::{numbers, vector};
+
+type Array<'py> = Bound<'py, PyArray1<f64>>;
+
+/// A place where the line of action meets a surface.
+///
+/// Frozen; can be pickled and copied.
+///
+/// Example:
+///     >>> import contactsense as cs, numpy as np
+///     >>> robot = cs.Robot.named("iiwa14")
+///     >>> tau_ext = [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0]
+///     >>> contact = cs.ContactIsolator(robot).isolate(np.full(7, 0.4), tau_ext).contacts[0]
+///     >>> all(candidate.point.shape == (3,) for candidate in contact.candidates)
+///     True
+#[pyclass(frozen, name = "Candidate", module = "contactsense")]
+pub struct PyCandidate {
+    names: Arc<Names>,
+    candidate: Candidate,
+    point: Once<PyArray1<f64>>,
+    normal: Once<PyArray1<f64>>,
+}
+
+impl PyCandidate {
+    fn new(names: Arc<Names>, candidate: Candidate) -> Self {
+        Self { names, candidate, point: Once::default(), normal: Once::default() }
+    }
+
+    pub fn from_content((names, candidate): (Names, Candidate)) -> Self {
+        Self::new(Arc::new(names), candidate)
+    }
+}
+
+#[pymethods]
+impl PyCandidate {
+    /// Name of the link.
+    #[getter]
+    fn link(&self) -> &str {
+        self.names.link(self.candidate.link)
+    }
+
+    /// Where the line meets the surface, `(3,)`, world frame [m]; read-only.
+    #[getter]
+    fn point<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        self.point.get(py, || Ok(numbers(py, self.candidate.point.as_slice())))
+    }
+
+    /// Outward unit normal of the surface, `(3,)`, world frame; read-only.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        self.normal.get(py, || Ok(numbers(py, self.candidate.normal.as_slice())))
+    }
+
+    /// Whether the force enters the surface here.
+    #[getter]
+    fn pushing(&self) -> bool {
+        self.candidate.pushing
+    }
+
+    /// All attributes by name.
+    ///
+    /// Returns:
+    ///     Plain Python values: numbers, strings, and lists in place of arrays.
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        plain_dict(slf.as_any(), &["link", "point", "normal", "pushing"])
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, "Candidate", &(&*self.names, &self.candidate))
+    }
+
+    fn __repr__(&self) -> String {
+        let (p, kind) = (&self.candidate.point, if self.candidate.pushing { "pushing" } else { "pulling" });
+        format!("Candidate('{}', point=[{:.4}, {:.4}, {:.4}], {kind})", self.link(), p.x, p.y, p.z)
+    }
+}
+
+/// One contact; vectors that the data do not determine are NaN.
+///
+/// Frozen; can be pickled and copied.
+///
+/// Example:
+///     >>> import contactsense as cs, numpy as np
+///     >>> robot = cs.Robot.named("iiwa14")
+///     >>> tau_ext = [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0]
+///     >>> contact = cs.ContactIsolator(robot).isolate(np.full(7, 0.4), tau_ext).contacts[0]
+///     >>> contact.source
+///     'joint torques'
+///     >>> contact.wrench.shape
+///     (6,)
+#[pyclass(frozen, name = "Contact", module = "contactsense")]
+pub struct PyContact {
+    names: Arc<Names>,
+    contact: Contact,
+    found: Vec<Candidate>,
+    vectors: Vectors,
+    candidates: Once<PyTuple>,
+}
+
+#[derive(Default)]
+struct Vectors {
+    point: Once<PyArray1<f64>>,
+    point_local: Once<PyArray1<f64>>,
+    force: Once<PyArray1<f64>>,
+    normal: Once<PyArray1<f64>>,
+    wrench: Once<PyArray1<f64>>,
+}
+
+impl PyContact {
+    fn new(names: Arc<Names>, contact: Contact, found: Vec<Candidate>) -> Self {
+        Self { names, contact, found, vectors: Vectors::default(), candidates: Once::default() }
+    }
+
+    pub fn from_content((names, contact, found): (Names, Contact, Vec<Candidate>)) -> Self {
+        Self::new(Arc::new(names), contact, found)
+    }
+}
+
+#[pymethods]
+impl PyContact {
+    /// Name of the link that is touched.
+    #[getter]
+    fn link(&self) -> &str {
+        self.names.link(self.contact.link)
+    }
+
+    /// Point of contact, `(3,)`, world frame [m]; read-only.
+    #[getter]
+    fn point<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        self.vectors.point.get(py, || Ok(vector(py, self.contact.place.map(|place| place.point))))
+    }
+
+    /// Point of contact, `(3,)`, link frame [m]; read-only.
+    #[getter]
+    fn point_local<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        self.vectors.point_local.get(py, || Ok(vector(py, self.contact.place.map(|place| place.point_local))))
+    }
+
+    /// Force on the robot, `(3,)`, world frame [N]; read-only.
+    #[getter]
+    fn force<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        self.vectors.force.get(py, || Ok(vector(py, self.contact.force())))
+    }
+
+    /// Outward unit normal of the surface at the point, `(3,)`, world frame; read-only.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        self.vectors.normal.get(py, || Ok(vector(py, self.contact.place.map(|place| place.normal))))
+    }
+
+    /// Force and moment on the robot at the link's origin, `(6,)`, world axes [N, Nm]; read-only.
+    #[getter]
+    fn wrench<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        self.vectors.wrench.get(py, || Ok(vector(py, self.contact.wrench)))
+    }
+
+    /// What saw it: "joint torques", or the name of a sensor.
+    #[getter]
+    fn source(&self) -> &str {
+        self.contact.source.map_or(JOINT_TORQUES, |sensor| &self.names.sensors[sensor.get()])
+    }
+
+    /// Whether 90 % of the places that explain the torques lie within `locate_within` of the point.
+    ///
+    /// If not, the link may be known, the point is not.
+    #[getter]
+    fn located(&self) -> bool {
+        self.contact.located
+    }
+
+    /// Standard deviation of the point [m]; NaN where there is no point.
+    ///
+    /// The standard deviation of a torque is taken as a third of its threshold, and as more where the torques contradict
+    /// one force. Other places that explain the torques about as well are included. Errors common to all torques, such
+    /// as those of a wrong payload, are not.
+    #[getter]
+    fn point_std(&self) -> f64 {
+        self.contact.place.map_or(f64::NAN, |place| place.std)
+    }
+
+    /// Whether redundant torques agree with the contacts reported.
+    ///
+    /// False where they do not, and where there are as many unknowns as torques: nothing then checks the assumption that
+    /// each contact is one force without moment.
+    #[getter]
+    fn verified(&self) -> bool {
+        self.contact.verified
+    }
+
+    /// Where it may be, best first.
+    ///
+    /// Every intersection of the line of action with a surface, points on other links that explain the torques about as
+    /// well, or the points of several solutions. The same tuple at every access.
+    #[getter]
+    fn candidates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        self.candidates.get(py, || {
+            let wrap = |candidate: &Candidate| PyCandidate::new(self.names.clone(), *candidate);
+            let list: Vec<_> =
+                self.found.iter().map(|found| Bound::new(py, wrap(found))).collect::<PyResult<_>>()?;
+            PyTuple::new(py, list)
+        })
+    }
+
+    /// All attributes by name.
+    ///
+    /// Returns:
+    ///     Plain Python values: numbers, strings, lists in place of arrays and tuples, and dicts in place of candidates.
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        let vectors = ["link", "point", "point_local", "force", "normal", "wrench", "source"];
+        let others = ["located", "point_std", "verified", "candidates"];
+        plain_dict(slf.as_any(), &[&vectors[..], &others[..]].concat())
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, "Contact", &(&*self.names, &self.contact, &self.found))
+    }
+
+    fn __repr__(&self) -> String {
+        let link = self.link();
+        match (self.contact.place, self.contact.force()) {
+            (Some(place), Some(force)) if self.contact.located => {
+                let (p, f) = (place.point, force.norm());
+                format!("Contact('{link}', point=[{:.4}, {:.4}, {:.4}], |force|={f:.3} N)", p.x, p.y, p.z)
+            }
+            _ => format!("Contact('{link}', located=False)"),
+        }
+    }
+}
+
+/// All contacts of one instant.
+///
+/// Frozen; can be pickled and copied.
+///
+/// Example:
+///     >>> import contactsense as cs, numpy as np
+///     >>> robot = cs.Robot.named("iiwa14")
+///     >>> isolation = cs.ContactIsolator(robot).isolate(np.full(7, 0.4), [1.0, 2.0, 0.5, 0.0, 0.0, 0.0, 0.0])
+///     >>> len(isolation.contacts), isolation.rank_deficit
+///     (1, 3)
+#[pyclass(frozen, name = "Isolation", module = "contactsense")]
+pub struct PyIsolation {
+    names: Arc<Names>,
+    isolation: Isolation,
+    contacts: Once<PyTuple>,
+}
+
+impl PyIsolation {
+    pub fn new(names: Arc<Names>, isolation: Isolation) -> Self {
+        Self { names, isolation, contacts: Once::default() }
+    }
+
+    pub fn from_content((names, isolation): (Names, Isolation)) -> Self {
+        Self::new(Arc::new(names), isolation)
+    }
+}
+
+/// A tuple of contacts that live on their own.
+pub fn contacts<'py>(
+    py: Python<'py>,
+    names: &Arc<Names>,
+    isolation: &Isolation,
+) -> PyResult<Bound<'py, PyTuple>> {
+    let wrap = |contact: &Contact| {
+        // One that was unpickled from a damaged file may say anything.
+        let found = isolation.candidates.get(contact.candidates.clone()).unwrap_or_default();
+        PyContact::new(names.clone(), contact.clone(), found.to_vec())
+    };
+    let list: Vec<Bound<'py, PyContact>> =
+        isolation.contacts.iter().map(|contact| Bound::new(py, wrap(contact))).collect::<PyResult<_>>()?;
+    PyTuple::new(py, list)
+}
+
+#[pymethods]
+impl PyIsolation {
+    /// The contacts, farthest from the base first; the same tuple at every access.
+    #[getter]
+    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        self.contacts.get(py, || contacts(py, &self.names, &self.isolation))
+    }
+
+    /// Components of the contacts' wrenches that the torques leave open (Vorndamme 2017, eq. 31).
+    #[getter]
+    fn rank_deficit(&self) -> usize {
+        self.isolation.rank_deficit
+    }
+
+    /// Norm of the external torque that the contacts do not explain [Nm, N].
+    #[getter]
+    fn residual(&self) -> f64 {
+        self.isolation.residual
+    }
+
+    /// Names of the links that may carry a contact, likeliest first.
+    #[getter]
+    fn link_candidates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        self.names.of_links(py, &self.isolation.link_candidates)
+    }
+
+    /// Whether something was left out.
+    ///
+    /// There were more contacts than `max_contacts`, more intersections of a line than are kept (the nearest are), or
+    /// more explanations to try than the bounded work of a call allows.
+    #[getter]
+    fn truncated(&self) -> bool {
+        self.isolation.truncated
+    }
+
+    /// All attributes by name.
+    ///
+    /// Returns:
+    ///     Plain Python values: numbers, strings, lists in place of arrays and tuples, and dicts in place of contacts.
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        let attributes = ["contacts", "rank_deficit", "residual", "link_candidates", "truncated"];
+        plain_dict(slf.as_any(), &attributes)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, "Isolation", &(&*self.names, &self.isolation))
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "Isolation({} contacts, rank_deficit={}, residual={:.3e})",
+            self.isolation.contacts.len(),
+            self.isolation.rank_deficit,
+            self.isolation.residual
+        )
+    }
+}

@@ -1,0 +1,138 @@
+"""Names, order and defaults of all arguments, as the API promises them: at run time and in the stub."""
+
+import ast
+import inspect
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import contactsense as cs
+
+STUB = Path(cs.__file__).with_name("_core.pyi")
+
+# Written by hand from the promised API. A `*` precedes what is given by name only.
+SIGNATURES = {
+    "Surface.closest_points": "points",
+    "Surface.cast_rays": "origins, directions",
+    "Surface.sample": "n, seed=0",
+    "MomentumObserver": "robot, *, dt, gain=50.0",
+    "MomentumObserver.update": "q, v, tau, *, dt=None, friction=None",
+    "MomentumObserver.reset": "",
+    "ForceTorqueSensor": "name, link, *, pose=None, convention='load'",
+    "LoadCompensator": "robot, sensors",
+    "LoadCompensator.update": "q, v, a, wrenches",
+    "NoiseModel": "*, torque=0.05, velocity=0.0, relative=0.03, model=0.1",
+    "ContactIsolator": "robot, *, sensors=(), torque_threshold=1e-3, wrench_threshold=1e-3, "
+    "wanted_contacts=(), "
+    "max_contacts=5, pushing=True, noise=None, locate_within=0.05",
+    "ContactIsolator.isolate": "q, tau_ext, wrenches=None",
+    "ContactMonitor": "robot, *, dt, sensors=(), wanted_contacts=(), observer_gain=50.0, "
+    "torque_threshold=0.5, "
+    "wrench_threshold=2.0, wrench_gain=None, bias_time_constant=None, bias_limit=30.0, "
+    "bias_settle_time=None, hysteresis=0.2, hold_time=0.02, max_contacts=5, pushing=True, "
+    "locate_within=0.05",
+    "ContactMonitor.update": "q, v, tau, wrenches=None, *, dt=None, friction=None",
+    "ContactMonitor.reset": "",
+    "ContactParticleFilter": "robot, *, particles=10_000, motion='curvature', measurement='normal', "
+    "friction=0.5, "
+    "links=None, "
+    "seed=0, force_range=(1, 100), stiffness_range=(3e2, 3e4), radius_range=(5e-3, 1.0), "
+    "schedule='adaptive', threads=1, likelihood='gaussian', torque_noise=0.02, relative_noise=0.03, "
+    "torque_threshold=0.2, noise=None",
+    "ContactParticleFilter.update": "q, tau_ext, *, time=None",
+    "ContactParticleFilter.reset": "",
+    "Candidate.to_dict": "",
+    "Contact.to_dict": "",
+    "Isolation.to_dict": "",
+    "ContactReport.to_dict": "",
+    "ContactEstimate.to_dict": "",
+    "Mode.to_dict": "",
+    "Robot.neutral": "",
+    "Robot.mass_matrix": "q",
+    "Robot.inverse_dynamics": "q, v, a",
+    "Robot.forward_dynamics": "q, v, tau, tau_ext=None",
+    "Robot.link_pose": "q, link",
+    "Robot.jacobian": "q, link, point=None",
+    "Robot.surface": "link",
+}
+
+
+def arguments(text):
+    """Kind, name and default of every argument of a signature's text."""
+    return of_node(ast.parse(f"def f({text}): ...").body[0].args)
+
+
+def of_node(args):
+    value = lambda node: ... if node is None else ast.literal_eval(node)  # noqa: E731
+    plain = [*args.posonlyargs, *args.args]
+    defaults = [None] * (len(plain) - len(args.defaults)) + list(args.defaults)
+    found = [("plain", arg.arg, value(default)) for arg, default in zip(plain, defaults, strict=True)]
+    by_name = zip(args.kwonlyargs, args.kw_defaults, strict=True)
+    found += [("by name", arg.arg, value(default)) for arg, default in by_name]
+    return [argument for argument in found if argument[1] not in ("self", "cls")]
+
+
+def at_run_time(name):
+    obj = cs
+    for part in name.split("."):
+        obj = getattr(obj, part)
+    kinds = {inspect.Parameter.KEYWORD_ONLY: "by name"}
+    return [
+        (kinds.get(p.kind, "plain"), p.name, ... if p.default is p.empty else p.default)
+        for p in inspect.signature(obj).parameters.values()
+        if p.name != "self"
+    ]
+
+
+def in_stub():
+    found = {}
+    for node in ast.parse(STUB.read_text(encoding="utf-8")).body:
+        if not isinstance(node, ast.ClassDef):
+            continue
+        for member in node.body:
+            is_plain = isinstance(member, ast.FunctionDef) and not member.decorator_list
+            if is_plain and member.name == "__new__":
+                found[node.name] = of_node(member.args)
+            elif is_plain and not member.name.startswith("_"):
+                found[f"{node.name}.{member.name}"] = of_node(member.args)
+    return found
+
+
+@pytest.mark.parametrize("name", SIGNATURES)
+def test_signatures_are_the_promised_ones(name):
+    promised = arguments(SIGNATURES[name])
+    assert at_run_time(name) == promised
+    assert in_stub()[name] == promised
+
+
+def test_every_public_method_is_in_the_table():
+    public = {name for name in in_stub() if not name.startswith("Robot") and name.split(".")[0] in cs.__all__}
+    assert public == {name for name in SIGNATURES if not name.startswith("Robot")}
+
+
+def test_the_defaults_are_those_in_use():
+    """What a signature says is given explicitly; the objects then say the same of themselves."""
+    robot = cs.Robot.named("iiwa14")
+
+    def made(name, **required):
+        given = {k: v for _, k, v in arguments(SIGNATURES[name]) if v is not ... and v is not None}
+        return [getattr(cs, name)(robot, **required, **more) for more in ({}, given)]
+
+    plain, given = made("ContactParticleFilter")
+    assert plain.options == given.options
+    assert plain.options["particles"] == 10_000
+    for name, required, readable in (
+        ("MomentumObserver", {"dt": 1e-3}, ["gain"]),
+        (
+            "ContactMonitor",
+            {"dt": 1e-3},
+            ["observer_gain", "torque_threshold", "wrench_threshold", "sensors"],
+        ),
+        ("ContactIsolator", {}, ["torque_threshold", "wrench_threshold", "sensors"]),
+    ):
+        plain, given = made(name, **required)
+        for attribute in readable:
+            assert np.array_equal(getattr(plain, attribute), getattr(given, attribute)), (name, attribute)
+    assert plain.torque_threshold[0] == 1e-3
+    assert cs.NoiseModel() == cs.NoiseModel(torque=0.05, velocity=0.0, relative=0.03, model=0.1)
