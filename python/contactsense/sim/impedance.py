@@ -63,7 +63,7 @@ class ImpedanceController:
         return torque if feedforward is None else torque + feedforward
 
 
-class HandImpedanceController:
+class HandImpedanceController(ImpedanceController):
     """A hand held by a spring in its six directions; the joints are drawn to `q_d` in what is left free.
 
     `tau = J^T (K_x e + D_x J (v_d - v)) + N^T (K (q_d - q) + D (v_d - v)) + C v + g`, where the hand's pose
@@ -94,16 +94,12 @@ class HandImpedanceController:
         damping_ratio: float = 0.7,
         bandwidth: float = 150.0,
     ) -> None:
-        _fixed(model)
+        super().__init__(model, stiffness=stiffness, damping_ratio=damping_ratio, bandwidth=bandwidth)
         if not model.existFrame(link, pin.FrameType.BODY):
             raise InputError(f"link: no link '{link}'")
-        self._model, self._data = model, model.createData()
         self._frame = model.getFrameId(link, pin.FrameType.BODY)
         sizes = [positive("translation", translation)] * 3 + [positive("rotation", rotation)] * 3
         self._hand_stiffness = np.array(sizes)
-        self.stiffness = _gains("stiffness", stiffness, model.nv)
-        self.damping_ratio = not_negative("damping_ratio", damping_ratio)
-        self.bandwidth = positive("bandwidth", bandwidth)
 
     def torque(
         self,
