@@ -1,4 +1,4 @@
-"""A simulated robot is hit: what it feels, against the truth.
+"""Contacts on a simulated robot: what is estimated, against the truth.
 
 "iiwa14" is an arm that is hit while it moves fast; "atlas" a humanoid that is pushed while it stands.
 
@@ -61,7 +61,8 @@ def run(
     with _naming("sensor_noise"):
         wrench_noise = WrenchNoise(newtons=sensor_noise[0], newton_metres=sensor_noise[1], seed=seed)
     prepare = humanoid.prepare if robot == humanoid.NAME else arm.prepare
-    return run_loop(prepare(seed, torque_noise, wrench_noise, gain), on_progress)
+    setup = prepare(seed, torque_noise, wrench_noise, gain)
+    return run_loop(setup, seed, torque_noise, wrench_noise, on_progress)
 
 
 @contextmanager

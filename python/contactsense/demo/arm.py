@@ -46,9 +46,6 @@ def prepare(seed: int, noise: TorqueNoise, sensor_noise: WrenchNoise, gain: floa
     controller = ComputedTorqueController(robot.model, kp=_KP, kd=_KD)
     return Setup(
         name=NAME,
-        seed=seed,
-        noise=noise,
-        sensor_noise=sensor_noise,
         robot=robot,
         simulated=arm,
         monitor=ContactMonitor(

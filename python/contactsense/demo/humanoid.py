@@ -77,9 +77,6 @@ def prepare(seed: int, noise: TorqueNoise, sensor_noise: WrenchNoise, gain: floa
     start = atlas.q
     return Setup(
         name=NAME,
-        seed=seed,
-        noise=noise,
-        sensor_noise=sensor_noise,
         robot=robot,
         simulated=atlas,
         monitor=monitor,

@@ -25,9 +25,6 @@ class Setup:
     """A robot that is ready to be pushed."""
 
     name: str
-    seed: int
-    noise: TorqueNoise
-    sensor_noise: WrenchNoise
     robot: Robot
     simulated: SimulatedRobot
     monitor: ContactMonitor
@@ -40,7 +37,13 @@ class Setup:
     standing: Callable[[list[Measurement]], Standing] | None = None  # how it stood, if it did
 
 
-def run_loop(setup: Setup, on_progress: Callable[[Progress], None] | None) -> DemoResult:
+def run_loop(
+    setup: Setup,
+    seed: int,
+    noise: TorqueNoise,
+    sensor_noise: WrenchNoise,
+    on_progress: Callable[[Progress], None] | None,
+) -> DemoResult:
     """Runs the robot to the end, pushes it, and scores what its monitor says."""
     robot, simulated, settings = setup.robot, setup.simulated, setup.settings
     waiting = [
@@ -81,9 +84,9 @@ def run_loop(setup: Setup, on_progress: Callable[[Progress], None] | None) -> De
     return DemoResult(
         robot_name=setup.name,
         robot=robot,
-        seed=setup.seed,
-        noise=setup.noise,
-        sensor_noise=setup.sensor_noise,
+        seed=seed,
+        noise=noise,
+        sensor_noise=sensor_noise,
         settings=settings,
         planned_speed=setup.speed,
         hits=tuple(scored),

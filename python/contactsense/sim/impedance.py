@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from contactsense.errors import InputError
 
-from ._arrays import FloatArray, not_negative, positive, vector
+from ._arrays import FloatArray, gains, not_negative, positive
 
 _AXES = pin.LOCAL_WORLD_ALIGNED
 
@@ -38,7 +38,9 @@ class ImpedanceController:
     ) -> None:
         _fixed(model)
         self._model, self._data = model, model.createData()
-        self.stiffness = _gains("stiffness", stiffness, model.nv)
+        self.stiffness = gains("stiffness", stiffness, model.nv)
+        if not self.stiffness.all():
+            raise InputError("stiffness must be positive")
         self.damping_ratio = not_negative("damping_ratio", damping_ratio)
         self.bandwidth = positive("bandwidth", bandwidth)
 
@@ -151,10 +153,3 @@ def _gains_at(
 def _fixed(model: pin.Model) -> None:
     if model.nq != model.nv:
         raise InputError("model: impedance control needs a fixed base and joints with one coordinate each")
-
-
-def _gains(name: str, value: ArrayLike, size: int) -> FloatArray:
-    gains = vector(name, np.broadcast_to(np.asarray(value, dtype=np.float64), (size,)), size)
-    if (gains <= 0).any():
-        raise InputError(f"{name} must be positive")
-    return gains
