@@ -11,8 +11,8 @@ import numpy as np
 import contactsense as cs
 from contactsense import sim
 
-robot, model = cs.Robot.named("iiwa14"), sim.named_model("iiwa14")
-scene = sim.touch_scene(robot, model, "iiwa_link_4", kind="sphere", force_range=(15.0, 25.0), seed=3)
+robot = cs.Robot.named("iiwa14")
+scene = sim.touch_scene(robot, "iiwa_link_4", kind="sphere", force_range=(15.0, 25.0), seed=3)
 print(
     f"a sphere of {1e2 * scene.obstacle.radius:.1f} cm on {scene.link}, {np.linalg.norm(scene.force):.1f} N"
 )
@@ -23,9 +23,9 @@ path = sim.joint_exploration(robot, scene, amplitude=np.deg2rad(3.0), pace=pace,
 
 # Physics simulation: compliant control, masses with an error of 5 %, friction, an observer, 5 % torque noise.
 contact = scene.contact(robot, friction=0.2, dissipation=1.0)
-real = sim.perturbed_model(model, mass=0.05, seed=1)
+real = sim.perturbed_model(robot.model, mass=0.05, seed=1)
 noise = sim.TorqueError(percent=5.0, seed=2)
-run = sim.record_run(robot, model, contact, path, true_model=real, error=noise)
+run = sim.record_run(robot, contact, path, true_model=real, error=noise)
 with tempfile.TemporaryDirectory() as folder:
     run.save(Path(folder) / "run.npz")
     run = sim.ContactRun.load(Path(folder) / "run.npz")

@@ -11,11 +11,11 @@ from contactsense import sim
 DT = 0.001  # [s]
 THRESHOLD = 0.1  # [Nm]
 
-robot, model = cs.Robot.named("iiwa14"), sim.named_model("iiwa14")
+robot = cs.Robot.named("iiwa14")
 monitor = cs.ContactMonitor(robot, dt=DT, observer_gain=500.0, torque_threshold=THRESHOLD)
-motion = sim.SineTrajectory.for_model(model, peak_speed=1.0, horizon=3.0, seed=2)
-controller = sim.ComputedTorqueController(model)
-arm = sim.SimulatedRobot(model, dt=DT)
+motion = sim.SineTrajectory.for_model(robot.model, peak_speed=1.0, horizon=3.0, seed=2)
+controller = sim.ComputedTorqueController(robot.model)
+arm = sim.SimulatedRobot(robot.model, dt=DT)
 arm.reset(motion.at(0.0).q)
 
 # 40 N at the centre of the outer face of link 7, close to the inward normal.

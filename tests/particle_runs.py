@@ -19,13 +19,12 @@ Which = Callable[[], tuple[cs.Robot, Any]]
 @cache
 def explored(link: int, seed: int, kind: str = "sphere", which: Which = packaged) -> sim.ContactRun:
     """Forty motions of two degrees, three samples each."""
-    robot, model = which()
-    return scene_run(robot, model, f"iiwa_link_{link}", seed, kind, least_torque=1.0)
+    robot = which()
+    return scene_run(robot, f"iiwa_link_{link}", seed, kind, least_torque=1.0)
 
 
 def scene_run(
     robot: cs.Robot,
-    model: Any,
     link: str,
     seed: int,
     kind: str = "sphere",
@@ -37,7 +36,6 @@ def scene_run(
         try:
             scene = sim.touch_scene(
                 robot,
-                model,
                 link,
                 kind=kind,
                 stiffness_range=stiffness,
@@ -56,7 +54,7 @@ def follow(
     run: sim.ContactRun, noise: float = 0.0, robot: cs.Robot | None = None, **options: Any
 ) -> cs.ContactEstimate:
     generator = np.random.default_rng(3)
-    tracker = cs.ContactParticleFilter(robot or arm()[0], **options)
+    tracker = cs.ContactParticleFilter(robot or arm(), **options)
     for q, torque in zip(run.q, run.external_torque, strict=True):
         estimate = tracker.update(q, torque * (1.0 + noise * generator.standard_normal(torque.size)))
     return estimate

@@ -132,36 +132,29 @@ def example(relative: str) -> Path:
     return _EXAMPLES / relative
 
 
-# Robots to touch in the simulation, each with its Pinocchio model.
+# Robots to touch in the simulation.
 
 
 @cache
-def packaged() -> tuple[cs.Robot, pin.Model]:
+def packaged() -> cs.Robot:
     """The packaged iiwa14, of exact primitives."""
-    from contactsense import sim
-
-    return cs.Robot.named("iiwa14"), sim.named_model("iiwa14")
+    return cs.Robot.named("iiwa14")
 
 
 @cache
-def meshes() -> tuple[cs.Robot, pin.Model]:
+def meshes() -> cs.Robot:
     """The iiwa14 with meshes, which are not convex; shared."""
-    from contactsense import sim
-
-    return IIWA14.robot(), sim.model_from_urdf(IIWA14.require().path)
+    return IIWA14.robot()
 
 
-def panda() -> tuple[cs.Robot, pin.Model]:
+def panda() -> cs.Robot:
     """Franka's arm with convex links, fingers and all."""
     return example_arm("panda")
 
 
-def example_arm(name: str) -> tuple[cs.Robot, pin.Model]:
+def example_arm(name: str) -> cs.Robot:
     """An arm of example-robot-data; skips the test where it is not installed."""
-    from contactsense import sim
-
-    file = BY_NAME[name].require()
-    return file.robot(), sim.model_from_urdf(file.path)
+    return BY_NAME[name].robot()
 
 
 def convex_parts(link: str) -> list[np.ndarray]:

@@ -12,8 +12,9 @@ import pytest
 
 from contactsense import InputError, demo
 from contactsense.cli.app import run as run_command
-from contactsense.demo.plan import FORCE_RANGE, LINKS, ROUNDS
-from contactsense.demo.settings import choose, noise_passed
+from contactsense.demo.arm import FORCE_RANGE, LINKS, ROUNDS, choose
+from contactsense.demo.settings import noise_passed
+from contactsense.sim import TorqueNoise
 
 NOISE = (2.0, 0.1)
 
@@ -97,11 +98,11 @@ def test_progress() -> None:
 
 def test_thresholds_follow_the_noise() -> None:
     torque = np.array([0.0, 100.0])
-    exact = choose(demo.Noise(), torque, 1e-3)
-    noisy = choose(demo.Noise(1.0, 0.5), torque, 1e-3)
+    exact = choose(TorqueNoise(), torque)
+    noisy = choose(TorqueNoise(percent=1.0, newton_metres=0.5), torque)
     assert (exact.torque_threshold == 0.05).all()
     assert noisy.observer_gain < exact.observer_gain
-    expected = 6.0 * noise_passed(noisy.observer_gain, 1e-3) * np.hypot([0.0, 1.0], 0.5)
+    expected = 6.0 * noise_passed(noisy.observer_gain) * np.hypot([0.0, 1.0], 0.5)
     np.testing.assert_allclose(noisy.torque_threshold, expected)
 
 
@@ -111,7 +112,7 @@ def test_noise_passed_is_the_observers() -> None:
     for mean in 0.5 * (noise[1:] + noise[:-1]):
         observed = mean + decay * (observed - mean)
         values.append(observed)
-    assert noise_passed(250.0, 1e-3) == pytest.approx(np.std(values), rel=0.02)
+    assert noise_passed(250.0) == pytest.approx(np.std(values), rel=0.02)
 
 
 @pytest.mark.parametrize(
@@ -153,7 +154,7 @@ def test_table_without_a_terminal(tmp_path: Path, capsys: pytest.CaptureFixture[
     told = capsys.readouterr().out
     assert told.count("delay") == 1
     assert "\x1b" not in told
-    assert "9 of 9 hits felt" in told
+    assert "9 of 9 hits detected" in told
     assert "Picture:" in told
     assert picture.exists()
 

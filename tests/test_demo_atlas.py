@@ -13,11 +13,10 @@ pytest.importorskip("mujoco", reason="the demo needs MuJoCo: pip install contact
 
 from contactsense import InputError, Robot, demo
 from contactsense.cli.app import run as run_command
-from contactsense.demo.atlas.plan import DURATION_RANGE, END, FORCE_RANGE, PLACES, plan_pushes
-from contactsense.demo.atlas.settings import BEHIND, SENSORS, SensorNoise, choose
+from contactsense.demo.humanoid import BEHIND, DURATION_RANGE, END, FORCE_RANGE, PLACES, choose, plan_pushes
 from contactsense.demo.settings import noise_passed
-from contactsense.sim import named_model
-from contactsense.sim.atlas import FEET, posture
+from contactsense.sim import TorqueNoise, WrenchNoise
+from contactsense.sim.atlas import FEET, SENSORS, posture
 
 NOISE, SENSOR_NOISE = (2.0, 0.1), (1.0, 0.05)
 # Settings were chosen on seeds from 100 on.
@@ -105,7 +104,8 @@ def test_the_truth_is_the_push_on_the_surface() -> None:
 
 
 def test_seeds_differ_and_repeat() -> None:
-    robot, model = Robot.named("atlas"), named_model("atlas")
+    robot = Robot.named("atlas")
+    model = robot.model
     plans = [plan_pushes(robot, posture(model, seed), seed) for seed in (1, 1, 2)]
     assert [push.link for push in plans[0]] == [push.link for push in plans[1]]
     np.testing.assert_array_equal(plans[0][0].point_local, plans[1][0].point_local)
@@ -117,16 +117,19 @@ def test_seeds_differ_and_repeat() -> None:
 
 
 def test_thresholds_follow_the_noise() -> None:
-    robot, model = Robot.named("atlas"), named_model("atlas")
+    robot = Robot.named("atlas")
+    model = robot.model
     q = posture(model, 1)
     torque = np.zeros(30)
     torque[3] = 100.0
-    exact = choose(robot, q, torque, demo.Noise(), SensorNoise(0, 0), 1e-3)
+    exact = choose(robot, q, torque, TorqueNoise(), WrenchNoise())
     np.testing.assert_array_equal(exact.torque_threshold, [3.0] * 6 + [1.0] * 30)
     np.testing.assert_array_equal(exact.wrench_threshold, [[3.0] * 3 + [0.5] * 3] * 9)
-    noisy = choose(robot, q, torque, demo.Noise(2.0, 1.0), SensorNoise(4.0, 0.5), 1e-3)
+    errors = TorqueNoise(percent=2.0, newton_metres=1.0)
+    sensor_errors = WrenchNoise(newtons=4.0, newton_metres=0.5)
+    noisy = choose(robot, q, torque, errors, sensor_errors)
     assert noisy.observer_gain < exact.observer_gain
-    scale = 6.0 * noise_passed(noisy.observer_gain, 1e-3)
+    scale = 6.0 * noise_passed(noisy.observer_gain)
     names = [sensor.name for sensor in SENSORS]
     alone = scale * np.repeat([4.0, 0.5], 3)
     np.testing.assert_allclose(noisy.wrench_threshold[names.index("l_hand")], alone)
@@ -135,7 +138,7 @@ def test_thresholds_follow_the_noise() -> None:
     np.testing.assert_allclose(chest[:3], scale * np.sqrt(3.0) * 4.0)
     assert (chest[3:] > np.sqrt(3.0) * alone[3:]).all()
     assert noisy.torque_threshold[6 + 3] == pytest.approx(scale * np.hypot(2.0, 1.0))
-    fast = choose(robot, q, torque, demo.Noise(), SensorNoise(4.0, 0.5), 1e-3, gain=500.0)
+    fast = choose(robot, q, torque, TorqueNoise(), sensor_errors, gain=500.0)
     # Without a low-pass a wrench is the mean of two readings.
     expected = 6.0 * np.sqrt(0.5) * np.repeat([4.0, 0.5], 3)
     np.testing.assert_allclose(fast.wrench_threshold[names.index("l_hand")], expected)
@@ -144,7 +147,7 @@ def test_thresholds_follow_the_noise() -> None:
 
 
 def test_sensors_behind_sensors_are_as_the_model_has_it() -> None:
-    model = named_model("atlas")
+    model = Robot.named("atlas").model
     joint = {sensor.name: model.frames[model.getFrameId(sensor.link)].parentJoint for sensor in SENSORS}
     for name in joint:
         chain = [int(index) for index in model.supports[joint[name]]][:-1]
@@ -203,6 +206,6 @@ def test_table_without_a_terminal(tmp_path: Path, capsys: pytest.CaptureFixture[
     told = " ".join(capsys.readouterr().out.split())
     assert "atlas stands, seed 2" in told
     assert "sensor noise 1 N and 0.05 Nm" in told
-    assert "5 of 5 hits felt" in told
+    assert "5 of 5 hits detected" in told
     assert "It kept standing" in told
     assert "Wanted contacts: l_foot, r_foot" in told

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 import contactsense as cs
-from contactsense.sim.sampling import integrate, random_configuration, touches
+from contactsense.sim.sampling import random_configuration, touches
 
 
 def torque(robot: cs.Robot, q: np.ndarray, link: str, point: np.ndarray, force: np.ndarray) -> np.ndarray:
@@ -153,7 +153,7 @@ def test_error_bars_hold_under_noise() -> None:
     step=arrays(float, 36, elements=st.floats(-10.0, 10.0)),
 )
 def test_any_finite_torque_has_an_answer(tau: np.ndarray, step: np.ndarray) -> None:
-    q = integrate(ATLAS, ATLAS.neutral(), step)
+    q = ATLAS.integrate(ATLAS.neutral(), step)
     isolation = ISOLATOR.isolate(q, tau)
     for contact in isolation.contacts:
         assert contact.link in ATLAS.link_names

@@ -25,7 +25,7 @@ def test_a_ball_is_found_on_the_outer_links(link: int, noise: float, which: Whic
     # Over eight seeds at most 6 mm off, the force by 11 %.
     runs = [explored(link, seed, which=which) for seed in (41, 42, 43)]
     for run in runs:
-        estimate = follow(run, noise, which()[0])
+        estimate = follow(run, noise, which())
         force = run.force[-1]
         assert estimate.link == run.link[-1]
         assert error(estimate, run) < 0.015
@@ -40,7 +40,7 @@ def test_a_ball_is_found_on_the_outer_links(link: int, noise: float, which: Whic
 def test_three_torques_give_the_link_and_about_the_point(noise: float, which: Which) -> None:
     # Over eight seeds a median of 17 mm, at most 59 mm.
     runs = [explored(3, seed, which=which) for seed in (41, 42, 43, 1041, 1042)]
-    estimates = [follow(run, noise, which()[0]) for run in runs]
+    estimates = [follow(run, noise, which()) for run in runs]
     assert [estimate.link for estimate in estimates] == [run.link[-1] for run in runs]
     assert np.median([error(*pair) for pair in zip(estimates, runs, strict=True)]) < 0.04
     assert all(estimate.contact and estimate.explained for estimate in estimates)
@@ -93,8 +93,8 @@ def test_the_papers_likelihood_and_schedule_find_the_outer_links() -> None:
 
 
 def test_friction_is_told_from_the_normal_force() -> None:
-    robot, model = arm()
-    scene = sim.touch_scene(robot, model, "iiwa_link_6", seed=4)
+    robot = arm()
+    scene = sim.touch_scene(robot, "iiwa_link_6", seed=4)
     path = sim.joint_exploration(robot, scene, pace=sim.Pace(motions=40, duration=0.25), seed=4)
     run = sim.record_quasi_static(robot, scene.contact(robot), path.time[::4], path.q[::4])
     sideways = np.cross(run.normal, [0.3, -0.5, 0.8])
@@ -117,7 +117,7 @@ def test_friction_is_told_from_the_normal_force() -> None:
 
 @pytest.mark.parametrize("which", ARMS)
 def test_the_first_particles_are_uniform_by_area_and_log_uniform_in_stiffness(which: Which) -> None:
-    robot, _ = which()
+    robot = which()
     run = explored(5, 41, which=which)
     tracker = cs.ContactParticleFilter(robot, particles=20_000, schedule={"sharpness": 1e-6})
     tracker.update(run.q[0], run.external_torque[0])
@@ -142,7 +142,7 @@ def test_the_same_seed_gives_the_same_particles_on_any_number_of_threads() -> No
     run = explored(4, 41)
     columns = []
     for threads in (1, 2, 4):
-        tracker = cs.ContactParticleFilter(arm()[0], particles=3000, seed=5, threads=threads)
+        tracker = cs.ContactParticleFilter(arm(), particles=3000, seed=5, threads=threads)
         for q, torque in zip(run.q[:15], run.external_torque[:15], strict=True):
             tracker.update(q, torque)
         particles = tracker.particles
@@ -151,14 +151,14 @@ def test_the_same_seed_gives_the_same_particles_on_any_number_of_threads() -> No
         )
     for other in columns[1:]:
         assert all(np.array_equal(a, b) for a, b in zip(columns[0], other, strict=True))
-    fresh = cs.ContactParticleFilter(arm()[0], particles=3000, seed=6)
+    fresh = cs.ContactParticleFilter(arm(), particles=3000, seed=6)
     fresh.update(run.q[0], run.external_torque[0])
     assert not np.array_equal(fresh.particles.point, columns[0][1])
 
 
 def test_reset_begins_anew() -> None:
     run = explored(4, 41)
-    tracker = cs.ContactParticleFilter(arm()[0], particles=2000)
+    tracker = cs.ContactParticleFilter(arm(), particles=2000)
     first = [tracker.update(q, tau).point for q, tau in zip(run.q[:5], run.external_torque, strict=False)]
     tracker.reset()
     again = [tracker.update(q, tau).point for q, tau in zip(run.q[:5], run.external_torque, strict=False)]
@@ -167,7 +167,7 @@ def test_reset_begins_anew() -> None:
 
 def test_other_threads_run_during_an_update() -> None:
     run = explored(4, 41)
-    robot, _ = arm()
+    robot = arm()
     tracker = cs.ContactParticleFilter(robot, particles=20_000)
     gate, had_its_turn = threading.Lock(), threading.Event()
 
@@ -196,7 +196,7 @@ def test_other_threads_run_during_an_update() -> None:
 
 def test_loss_and_return_of_a_contact_are_noticed() -> None:
     run = explored(5, 42)
-    tracker = cs.ContactParticleFilter(arm()[0])
+    tracker = cs.ContactParticleFilter(arm())
     nothing = np.zeros(7)
     q = run.q[0]
     still = tracker.update(q, nothing)
@@ -216,13 +216,13 @@ def test_loss_and_return_of_a_contact_are_noticed() -> None:
 
 def test_a_contact_that_moves_elsewhere_is_found_again() -> None:
     first = explored(4, 41)
-    robot, model = arm()
+    robot = arm()
     tracker = cs.ContactParticleFilter(robot)
     for q, torque in zip(first.q, first.external_torque, strict=True):
         tracker.update(q, torque)
     # The same posture, another obstacle: no jump tells it.
     scene = sim.touch_scene(
-        robot, model, "iiwa_link_6", q=first.q[-1], stiffness_range=(1e3, 1e4), least_torque=1.0, seed=3
+        robot, "iiwa_link_6", q=first.q[-1], stiffness_range=(1e3, 1e4), least_torque=1.0, seed=3
     )
     path = sim.joint_exploration(robot, scene, pace=sim.Pace(motions=40, duration=0.25), seed=3)
     then = sim.record_quasi_static(robot, scene.contact(robot), path.time[::4], path.q[::4])
@@ -239,7 +239,7 @@ def test_a_contact_that_moves_elsewhere_is_found_again() -> None:
 
 def test_an_arm_that_holds_still_learns_a_measurement_once() -> None:
     run = explored(3, 41)
-    tracker = cs.ContactParticleFilter(arm()[0])
+    tracker = cs.ContactParticleFilter(arm())
     spreads = [
         float(np.sqrt(np.trace(tracker.update(run.q[0], run.external_torque[0]).covariance)))
         for _ in range(100)

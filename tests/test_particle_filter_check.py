@@ -14,7 +14,7 @@ from contactsense import sim
 
 
 def test_a_torque_that_nothing_explains_is_said_to_be_so() -> None:
-    robot, _ = arm()
+    robot = arm()
     tracker = cs.ContactParticleFilter(robot, particles=3000, links=["iiwa_link_2"])
     # The wrist alone: no contact on link 2 does that.
     torque = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 8.0, 5.0])
@@ -67,10 +67,10 @@ def run_links(robot: cs.Robot) -> list[str]:
 # Constants were chosen on other seeds of the iiwa14 and the panda.
 @pytest.mark.parametrize("which", ["iiwa14", "ur5", "xarm7"])
 def test_what_is_no_single_push_is_not_sure(which: str) -> None:
-    robot, model = packaged() if which == "iiwa14" else example_arm(which)
+    robot = packaged() if which == "iiwa14" else example_arm(which)
     links = run_links(robot)
     chosen = [links[1], links[2], links[4]]  # three joints, four and six, or so
-    runs = [scene_run(robot, model, link, seed) for seed, link in enumerate(chosen, 31)]
+    runs = [scene_run(robot, link, seed) for seed, link in enumerate(chosen, 31)]
     updates, sure, wrong, pushes = 0, 0, 0, []
     for run in runs:
         for torques, points in violated(run, robot).values():
@@ -92,8 +92,8 @@ def test_what_is_no_single_push_is_not_sure(which: str) -> None:
 
 def test_a_payload_whose_force_follows_the_motion_is_not_sure() -> None:
     # A weight in the gripper of the Talos arm fits a point of link 5 whose force follows a spring of 360 N/m.
-    robot, model = example_arm("talos_left_arm")
-    run = scene_run(robot, model, "gripper_left_inner_single_link", 21)
+    robot = example_arm("talos_left_arm")
+    run = scene_run(robot, "gripper_left_inner_single_link", 21)
     payload, last = [], run_links(robot)[-1]
     for q in run.q:
         pose = robot.link_pose(q, last)
@@ -106,20 +106,20 @@ def test_a_payload_whose_force_follows_the_motion_is_not_sure() -> None:
 
 def test_a_push_is_sure_once_motion_has_confirmed_it() -> None:
     run = explored(6, 42)
-    tracker = cs.ContactParticleFilter(arm()[0], particles=3000)
+    tracker = cs.ContactParticleFilter(arm(), particles=3000)
     sure = [
         not tracker.update(q, torque).ambiguous for q, torque in zip(run.q, run.external_torque, strict=True)
     ]
     assert not any(sure[:5])
     assert all(sure[25:])
     # The same torque again and again is no motion: a pull would look the same.
-    still = cs.ContactParticleFilter(arm()[0], particles=3000)
+    still = cs.ContactParticleFilter(arm(), particles=3000)
     assert all(still.update(run.q[0], run.external_torque[0]).ambiguous for _ in range(40))
 
 
 def test_a_soft_obstacle_is_sure_too() -> None:
-    robot, model = arm()
-    run = scene_run(robot, model, "iiwa_link_6", 45, stiffness=(4e2, 5e2))
+    robot = arm()
+    run = scene_run(robot, "iiwa_link_6", 45, stiffness=(4e2, 5e2))
     estimate = follow(run, particles=3000)
     assert error(estimate, run) < 0.02
     assert not estimate.ambiguous
@@ -128,7 +128,7 @@ def test_a_soft_obstacle_is_sure_too() -> None:
 @pytest.mark.parametrize("which", [packaged, pytest.param(meshes, marks=pytest.mark.shared)])
 @pytest.mark.parametrize("noise", [0.0, 0.1])
 def test_a_push_on_an_outer_link_is_sure_after_few_poses(noise: float, which: Any) -> None:
-    robot, _ = which()
+    robot = which()
     generator = np.random.default_rng(7)
     for link in (4, 5, 6, 7):
         run = explored(link, 43, which=which)
@@ -145,7 +145,7 @@ def test_a_push_on_an_outer_link_is_sure_after_few_poses(noise: float, which: An
 
 
 def test_a_push_with_friction_is_sure_in_a_cone() -> None:
-    robot, _ = arm()
+    robot = arm()
     run = explored(6, 42)
     rotated = [np.cross(normal, [0.0, 0.6, 0.8]) for normal in run.normal]
     across = 0.2 * np.linalg.norm(run.force, axis=1)[:, None] * np.array(rotated)
@@ -159,7 +159,7 @@ def test_a_push_with_friction_is_sure_in_a_cone() -> None:
 
 @pytest.mark.parametrize("options", [{"motion": "fixed_on_link"}, {"motion": "fixed_in_world"}])
 def test_baselines_doubt_what_no_push_explains(options: dict[str, Any]) -> None:
-    robot, _ = arm()
+    robot = arm()
     run = explored(5, 41)
     signs = np.resize([1.0, -1.0], robot.nv)
     tracker = cs.ContactParticleFilter(robot, particles=3000, **options)

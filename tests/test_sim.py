@@ -14,7 +14,9 @@ pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install c
 
 import mujoco
 from described import describe_urdf
+from robots import PACKAGE_DIRS, example
 
+from contactsense import Robot
 from contactsense.errors import InputError, ModelError
 from contactsense.sim import (
     Coordinates,
@@ -23,19 +25,13 @@ from contactsense.sim import (
     geoms_of,
     mjcf_string,
     mjcf_tree,
-    model_from_urdf,
-    named_model,
 )
 
 DESCRIPTIONS = Path(__file__).resolve().parents[1] / "python" / "contactsense" / "descriptions"
 
 
 def _example(file: str, *, floating: bool) -> pin.Model:
-    prefix = Path(pin.__file__).parents[4]
-    path = prefix / "share" / "example-robot-data" / "robots" / file
-    if not path.exists():
-        pytest.skip("example-robot-data is not installed")
-    return model_from_urdf(path, floating_base=floating)
+    return Robot.from_urdf(example(file), package_dirs=PACKAGE_DIRS, floating_base=floating).model
 
 
 def _continuous() -> pin.Model:
@@ -55,8 +51,8 @@ def _continuous() -> pin.Model:
 
 
 MODELS: dict[str, Callable[[], pin.Model]] = {
-    "iiwa14": lambda: named_model("iiwa14"),
-    "atlas": lambda: named_model("atlas"),
+    "iiwa14": lambda: Robot.named("iiwa14").model,
+    "atlas": lambda: Robot.named("atlas").model,
     "panda": lambda: _example("panda_description/urdf/panda.urdf", floating=False),
     "talos": lambda: _example("talos_data/robots/talos_reduced.urdf", floating=True),
     "continuous": _continuous,
@@ -132,7 +128,7 @@ def test_absent_mujoco_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_wrong_arguments_are_named() -> None:
-    model = named_model("iiwa14")
+    model = Robot.named("iiwa14").model
     with pytest.raises(InputError, match="dt"):
         mjcf_string(model, dt=0.0)
     with pytest.raises(InputError, match="dt"):
@@ -156,7 +152,7 @@ def test_wrong_arguments_are_named() -> None:
 
 def test_geoms_lie_where_the_description_has_them() -> None:
     description = describe_urdf(DESCRIPTIONS / "iiwa14.urdf")
-    model = named_model("iiwa14")
+    model = Robot.named("iiwa14").model
     geoms = geoms_of(description.links, contype=1, conaffinity=2)
     assert len(geoms) == sum(len(link.geometry) for link in description.links)
     robot = SimulatedRobot(model, geoms=geoms)
@@ -177,7 +173,7 @@ def test_geoms_lie_where_the_description_has_them() -> None:
 
 @pytest.mark.parametrize("name", ["iiwa14", "atlas"])
 def test_forces_act_as_the_jacobian_says(name: str) -> None:
-    model = named_model(name)
+    model = Robot.named(name).model
     robot = SimulatedRobot(model)
     data = model.createData()
     for seed, link in enumerate(
@@ -206,7 +202,7 @@ def test_forces_act_as_the_jacobian_says(name: str) -> None:
 
 
 def test_free_fall_of_a_floating_robot() -> None:
-    model = named_model("atlas")
+    model = Robot.named("atlas").model
     robot = SimulatedRobot(model)
     data = model.createData()
     start = pin.centerOfMass(model, data, robot.q).copy()
@@ -217,7 +213,7 @@ def test_free_fall_of_a_floating_robot() -> None:
 
 
 def test_measurement_belongs_to_the_beginning_of_its_step() -> None:
-    model = named_model("iiwa14")
+    model = Robot.named("iiwa14").model
     robot = SimulatedRobot(model, dt=0.001)
     q, v, _ = _random_state(model, 5)
     robot.reset(q, v)
@@ -244,7 +240,7 @@ def test_measurement_belongs_to_the_beginning_of_its_step() -> None:
 
 
 def test_substeps_and_integrator_agree() -> None:
-    model = named_model("iiwa14")
+    model = Robot.named("iiwa14").model
     ends = []
     for substeps in (1, 10):
         robot = SimulatedRobot(model, substeps=substeps)
@@ -263,7 +259,7 @@ def test_noise_has_its_size_and_repeats() -> None:
     np.testing.assert_allclose(drawn.std(axis=0), [np.hypot(2.0, 0.5), 0.5], rtol=0.03)
     again = TorqueNoise(percent=2.0, newton_metres=0.5, seed=3)
     np.testing.assert_array_equal(drawn[0], again.measure(tau))
-    clean, noisy = (SimulatedRobot(named_model("iiwa14"), noise=n) for n in (None, again))
+    clean, noisy = (SimulatedRobot(Robot.named("iiwa14").model, noise=n) for n in (None, again))
     torques = np.full(7, 10.0)
     assert (clean.step(torques).tau == torques).all()
     assert (noisy.step(torques).tau != torques).all()
@@ -272,7 +268,7 @@ def test_noise_has_its_size_and_repeats() -> None:
 
 
 def test_own_world_replaces_the_bare_one() -> None:
-    model = named_model("iiwa14")
+    model = Robot.named("iiwa14").model
     root = mjcf_tree(model)
     world = root.find("worldbody")
     assert world is not None
@@ -280,4 +276,4 @@ def test_own_world_replaces_the_bare_one() -> None:
     robot = SimulatedRobot(model, mjcf=ET.tostring(root, encoding="unicode"))
     assert robot.mj_model.geom("wall").id == 0
     with pytest.raises(ModelError, match="has no joint"):
-        SimulatedRobot(named_model("atlas"), mjcf=ET.tostring(root, encoding="unicode"))
+        SimulatedRobot(Robot.named("atlas").model, mjcf=ET.tostring(root, encoding="unicode"))

@@ -28,8 +28,8 @@ POSE = np.array([0.3, 0.7, -0.2, -1.2, 0.4, 0.7, 0.1])
 
 
 def test_normal_force_is_a_spring_and_never_pulls() -> None:
-    robot, model = packaged()
-    scene = touch_scene(robot, model, "iiwa_link_4", seed=1)
+    robot = packaged()
+    scene = touch_scene(robot, "iiwa_link_4", seed=1)
     contact = scene.contact(robot)
     still = np.zeros(7)
     (force,) = contact.forces(scene.q, still)
@@ -54,8 +54,8 @@ def test_normal_force_is_a_spring_and_never_pulls() -> None:
 
 
 def test_friction_opposes_slip_and_stays_in_the_cone() -> None:
-    robot, model = packaged()
-    scene = touch_scene(robot, model, "iiwa_link_5", seed=2)
+    robot = packaged()
+    scene = touch_scene(robot, "iiwa_link_5", seed=2)
     contact = scene.contact(robot, friction=0.2)
     rng = np.random.default_rng(0)
     for speed in (1e-5, 1e-2, 1.0):
@@ -83,8 +83,8 @@ def test_friction_opposes_slip_and_stays_in_the_cone() -> None:
 
 
 def test_a_core_that_is_reached_is_refused() -> None:
-    robot, model = packaged()
-    scene = touch_scene(robot, model, "iiwa_link_5", kind="cylinder", seed=3)
+    robot = packaged()
+    scene = touch_scene(robot, "iiwa_link_5", kind="cylinder", seed=3)
     pose = robot.link_pose(scene.q, "iiwa_link_5")
     center = pose[:3, :3] @ robot.surface("iiwa_link_5").vertices.mean(axis=0) + pose[:3, 3]
     moved = type(scene.obstacle)(center, scene.obstacle.axis, 0.01, 0.5)
@@ -93,7 +93,7 @@ def test_a_core_that_is_reached_is_refused() -> None:
 
 
 def test_wrong_settings_are_named() -> None:
-    robot, _ = packaged()
+    robot = packaged()
     ball = SphereObstacle([0, 0, 0], 1.0)
     for name, value in {"stiffness": 0.0, "friction": -1.0, "slip_speed": 0.0, "dissipation": -1.0}.items():
         options = {"stiffness": 1.0} | {name: value}
@@ -114,7 +114,8 @@ def _run(arm: SimulatedRobot, control, goal: np.ndarray, contact=None, ticks: in
 
 
 def test_soft_joints_give_way_by_stiffness() -> None:
-    robot, model = packaged()
+    robot = packaged()
+    model = robot.model
     control = ImpedanceController(model, stiffness=[800.0] * 4 + [50.0] * 3, bandwidth=1e4)
     arm = SimulatedRobot(model)
     arm.reset(POSE)
@@ -131,7 +132,7 @@ def test_soft_joints_give_way_by_stiffness() -> None:
 
 
 def test_every_mode_is_damped_as_asked_and_none_is_too_fast() -> None:
-    _, model = packaged()
+    model = packaged().model
     data = model.createData()
     control = ImpedanceController(model, stiffness=1000.0, damping_ratio=0.7, bandwidth=150.0)
     # Linear about POSE at rest: torque's derivatives are -K and -D.
@@ -153,7 +154,8 @@ def test_every_mode_is_damped_as_asked_and_none_is_too_fast() -> None:
 
 
 def test_hand_stays_while_the_elbow_moves() -> None:
-    robot, model = packaged()
+    robot = packaged()
+    model = robot.model
     control = HandImpedanceController(model, "iiwa_link_7")
     arm = SimulatedRobot(model)
     arm.reset(POSE)
@@ -180,7 +182,7 @@ def test_hand_stays_while_the_elbow_moves() -> None:
 
 
 def test_controllers_name_what_is_wrong() -> None:
-    _, model = packaged()
+    model = packaged().model
     free = pin.Model()
     free.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "free")
     for make, name in [
@@ -195,10 +197,11 @@ def test_controllers_name_what_is_wrong() -> None:
 
 @pytest.mark.parametrize("kind", ["sphere", "cube", "cylinder"])
 def test_mujoco_finds_the_same_contact_on_convex_links(kind: str) -> None:
-    robot, model = panda()
+    robot = panda()
+    model = robot.model
     judged = 0
     for link in ("panda_link3", "panda_link4", "panda_link5", "panda_link6"):
-        scene = touch_scene(robot, model, link, kind=kind, seed=5)
+        scene = touch_scene(robot, link, kind=kind, seed=5)
         other = MujocoContact(
             scene.obstacle, hull_parts(robot, [link]), stiffness=scene.stiffness, damping=20.0
         )
@@ -221,8 +224,9 @@ def test_mujoco_finds_the_same_contact_on_convex_links(kind: str) -> None:
 
 
 def test_mujoco_sums_primitives_and_knows_friction() -> None:
-    robot, model = packaged()
-    scene = touch_scene(robot, model, "iiwa_link_6", seed=1)
+    robot = packaged()
+    model = robot.model
+    scene = touch_scene(robot, "iiwa_link_6", seed=1)
     parts = [geom for geom in named_geoms("iiwa14") if geom.name.startswith("iiwa_link_6:")]
     other = MujocoContact(scene.obstacle, parts, stiffness=scene.stiffness, friction=0.3)
     arm = other.arm(model)

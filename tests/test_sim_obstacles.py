@@ -119,7 +119,7 @@ def _near(robot, link, q, rng) -> list[Obstacle]:
 
 @pytest.mark.parametrize("which", [packaged, pytest.param(meshes, marks=pytest.mark.shared)])
 def test_nothing_is_deeper(which) -> None:
-    robot, _ = which()
+    robot = which()
     rng = np.random.default_rng(3)
     q = np.array([0.3, 0.5, -0.2, -1.2, 0.4, 0.7, 0.1])
     judged = 0
@@ -144,7 +144,7 @@ def test_nothing_is_deeper(which) -> None:
 
 @pytest.mark.shared
 def test_distances_agree_with_mujoco_on_convex_parts() -> None:
-    robot, _ = meshes()
+    robot = meshes()
     rng = np.random.default_rng(4)
     q = np.array([0.3, 0.5, -0.2, -1.2, 0.4, 0.7, 0.1])
     judged = 0
@@ -194,7 +194,7 @@ def _quaternion(turn: np.ndarray) -> np.ndarray:
 
 
 def test_a_centre_inside_a_link_is_deeper_still() -> None:
-    robot, _ = packaged()
+    robot = packaged()
     q = robot.neutral()
     surface, pose = robot.surface("iiwa_link_5"), robot.link_pose(q, "iiwa_link_5")
     sample = surface.sample(1, seed=7)
@@ -206,7 +206,7 @@ def test_a_centre_inside_a_link_is_deeper_still() -> None:
 
 
 def test_only_links_that_touch_are_found() -> None:
-    robot, _ = packaged()
+    robot = packaged()
     q = robot.neutral()
     pose = robot.link_pose(q, "iiwa_link_4")
     query = ContactQuery(robot, SphereObstacle(pose[:3, 3] + [0.0, 0.0, 2.0], 0.1))

@@ -9,6 +9,7 @@ import pytest
 pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install contactsense[sim]")
 
 
+from contactsense import Robot
 from contactsense.errors import InputError
 from contactsense.sim import (
     ComputedTorqueController,
@@ -16,13 +17,12 @@ from contactsense.sim import (
     Push,
     SimulatedRobot,
     SineTrajectory,
-    named_model,
     random_push,
 )
 
 
 def test_trajectory_is_smooth_fast_and_within_limits() -> None:
-    model = named_model("iiwa14")
+    model = Robot.named("iiwa14").model
     motion = SineTrajectory.for_model(model, peak_speed=1.9, seed=4, horizon=30.0)
     start = motion.at(0.0)
     np.testing.assert_array_equal(start.v, 0)
@@ -93,7 +93,7 @@ def _observe(model: pin.Model, run: _Run, dt: float, torque: str, gain: float = 
 
 
 def test_controller_tracks_and_observer_stays_silent() -> None:
-    model = named_model("iiwa14")
+    model = Robot.named("iiwa14").model
     motion = SineTrajectory.for_model(model, peak_speed=1.9, seed=1, horizon=6.0)
     run = _run(SimulatedRobot(model), motion, 6.0)
     assert run.tracking < 0.01
@@ -103,7 +103,7 @@ def test_controller_tracks_and_observer_stays_silent() -> None:
 
 
 def test_push_shows_in_the_observer_as_applied() -> None:
-    model = named_model("iiwa14")
+    model = Robot.named("iiwa14").model
     motion = SineTrajectory.for_model(model, peak_speed=1.0, seed=2, horizon=3.0)
     push = Push("iiwa_link_5", np.array([0.0, 0.1, 0.15]), np.array([0.0, -1.0, 0.2]), 30.0, 1.5, 0.5)
     robot = SimulatedRobot(model)
@@ -115,13 +115,13 @@ def test_push_shows_in_the_observer_as_applied() -> None:
 
 
 def test_torque_limits_hold() -> None:
-    model = named_model("iiwa14")
+    model = Robot.named("iiwa14").model
     controller = ComputedTorqueController(model, torque_limits=np.full(7, 1.0))
     motion = SineTrajectory.for_model(model, seed=1)
     torque = controller.torque(np.zeros(7), np.zeros(7), motion.at(3.0))
     assert np.abs(torque).max() == 1.0
     with pytest.raises(InputError, match="fixed base"):
-        ComputedTorqueController(named_model("atlas"))
+        ComputedTorqueController(Robot.named("atlas").model)
 
 
 def test_push_is_a_half_sine() -> None:

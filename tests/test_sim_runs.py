@@ -24,7 +24,6 @@ from contactsense.sim import (
     TorqueNoise,
     hull_parts,
     joint_exploration,
-    named_model,
     null_space_exploration,
     perturbed_model,
     record_quasi_static,
@@ -39,12 +38,13 @@ FEW = Pace(motions=4, duration=0.4)
 @pytest.mark.parametrize("kind", ["sphere", "cube", "cylinder"])
 @pytest.mark.parametrize("which", [packaged, pytest.param(meshes, marks=pytest.mark.shared), panda])
 def test_scenes_touch_one_link_and_are_felt(which, kind: str) -> None:
-    robot, model = which()
+    robot = which()
+    model = robot.model
     # Of Franka's arm, link 7 hides between its neighbours.
     links = [link for link in robot.link_names[1:] if link[-1] in "123456"]
     for link in links:
         for seed in range(3):
-            scene = touch_scene(robot, model, link, kind=kind, seed=seed)
+            scene = touch_scene(robot, link, kind=kind, seed=seed)
             query = ContactQuery(robot, scene.obstacle, links=robot.link_names)
             (found,) = query.touching(scene.q)
             assert found.link == link
@@ -66,12 +66,12 @@ def test_scenes_touch_one_link_and_are_felt(which, kind: str) -> None:
 
 
 def test_scenes_follow_seed_and_arguments() -> None:
-    robot, model = packaged()
-    one, same, other = (touch_scene(robot, model, "iiwa_link_3", seed=seed) for seed in (5, 5, 6))
+    robot = packaged()
+    one, same, other = (touch_scene(robot, "iiwa_link_3", seed=seed) for seed in (5, 5, 6))
     np.testing.assert_array_equal(one.q, same.q)
     assert one.obstacle.to_dict() == same.obstacle.to_dict() != other.obstacle.to_dict()
     ranges = {"radius_range": (0.05, 0.05), "force_range": (20.0, 20.0), "stiffness_range": (1e4, 2e4)}
-    scene = touch_scene(robot, model, "iiwa_link_3", q=one.q, seed=1, **ranges)
+    scene = touch_scene(robot, "iiwa_link_3", q=one.q, seed=1, **ranges)
     np.testing.assert_array_equal(scene.q, one.q)
     assert scene.obstacle.radius == pytest.approx(0.05)
     assert 1e4 <= scene.stiffness <= 2e4
@@ -83,9 +83,8 @@ def test_scenes_follow_seed_and_arguments() -> None:
         ({"force_range": (2.0, 1.0)}, "force_range"),
         ({"radius_range": (0.0, 1.0)}, "radius_range"),
         ({"least_torque": 1e3}, "least_torque"),
-        ({"model": named_model("atlas")}, "model"),
     ]:
-        arguments = {"model": model, "link": "iiwa_link_3"} | options
+        arguments = {"link": "iiwa_link_3"} | options
         with pytest.raises(InputError, match=name):
             touch_scene(robot, **arguments)
 
@@ -99,9 +98,9 @@ def _depths(robot, scene, path: ContactPath) -> np.ndarray:
 
 @pytest.mark.parametrize("kind", ["sphere", "cube", "cylinder"])
 def test_explorations_keep_the_contact_within_the_band(kind: str) -> None:
-    robot, model = packaged()
+    robot = packaged()
     for link in ("iiwa_link_2", "iiwa_link_4", "iiwa_link_6"):
-        scene = touch_scene(robot, model, link, kind=kind, seed=1)
+        scene = touch_scene(robot, link, kind=kind, seed=1)
         depth = np.linalg.norm(scene.force) / scene.stiffness
         for explore in (joint_exploration, sliding_exploration):
             path = explore(robot, scene, pace=Pace(motions=6, duration=0.2))
@@ -116,8 +115,8 @@ def test_explorations_keep_the_contact_within_the_band(kind: str) -> None:
 
 
 def test_sliding_moves_the_contact_along_the_surface() -> None:
-    robot, model = packaged()
-    scene = touch_scene(robot, model, "iiwa_link_4", seed=1)
+    robot = packaged()
+    scene = touch_scene(robot, "iiwa_link_4", seed=1)
     ways = []
     for explore in (joint_exploration, sliding_exploration):
         path = explore(robot, scene, pace=Pace(motions=10, duration=0.2))
@@ -131,8 +130,8 @@ def test_sliding_moves_the_contact_along_the_surface() -> None:
 
 
 def test_null_space_motions_hold_the_hand() -> None:
-    robot, model = packaged()
-    scene = touch_scene(robot, model, "iiwa_link_4", seed=1)
+    robot = packaged()
+    scene = touch_scene(robot, "iiwa_link_4", seed=1)
     for hold, rows in (("position", 3), ("pose", 4)):
         path = null_space_exploration(robot, scene, "iiwa_link_7", hold=hold, pace=FEW)
         _depths(robot, scene, path)
@@ -146,8 +145,8 @@ def test_null_space_motions_hold_the_hand() -> None:
 
 
 def test_explorations_name_what_is_wrong() -> None:
-    robot, model = packaged()
-    scene = touch_scene(robot, model, "iiwa_link_4", seed=1)
+    robot = packaged()
+    scene = touch_scene(robot, "iiwa_link_4", seed=1)
     for make, name in [
         (lambda: joint_exploration(robot, scene, amplitude=0.0), "amplitude"),
         (lambda: joint_exploration(robot, scene, force_band=(0.0, 1.0)), "force_band"),
@@ -160,8 +159,8 @@ def test_explorations_name_what_is_wrong() -> None:
 
 
 def test_paths_pass_their_knots_smoothly() -> None:
-    robot, model = packaged()
-    path = joint_exploration(robot, touch_scene(robot, model, "iiwa_link_4", seed=1), pace=FEW)
+    robot = packaged()
+    path = joint_exploration(robot, touch_scene(robot, "iiwa_link_4", seed=1), pace=FEW)
     for k in (0, 7, len(path) - 1):
         np.testing.assert_allclose(path.at(path.time[k]).q, path.q[k], atol=1e-12)
     for when in (0.111, 0.5, 1.2345):
@@ -174,8 +173,9 @@ def test_paths_pass_their_knots_smoothly() -> None:
 
 @pytest.mark.parametrize("which", [packaged, pytest.param(meshes, marks=pytest.mark.shared)])
 def test_quasi_static_runs_are_consistent(which) -> None:
-    robot, model = which()
-    scene = touch_scene(robot, model, "iiwa_link_4", seed=1)
+    robot = which()
+    model = robot.model
+    scene = touch_scene(robot, "iiwa_link_4", seed=1)
     path = joint_exploration(robot, scene, pace=FEW)
     run = record_quasi_static(robot, scene.contact(robot), path.time, path.q)
     assert len(run) == len(path) == len(run.link)
@@ -209,8 +209,8 @@ def test_quasi_static_runs_are_consistent(which) -> None:
 
 
 def test_errors_of_measurement_are_as_large_as_asked() -> None:
-    robot, model = packaged()
-    scene = touch_scene(robot, model, "iiwa_link_4", seed=1)
+    robot = packaged()
+    scene = touch_scene(robot, "iiwa_link_4", seed=1)
     times, poses = np.arange(2000.0), np.tile(scene.q, (2000, 1))
     contact = scene.contact(robot)
     noisy = record_quasi_static(robot, contact, times, poses, error=TorqueError(10.0, 0.05, seed=3))
@@ -230,12 +230,13 @@ def test_errors_of_measurement_are_as_large_as_asked() -> None:
 
 
 def test_another_model_shows_as_false_torque() -> None:
-    robot, model = packaged()
+    robot = packaged()
+    model = robot.model
     true = perturbed_model(model, mass=0.05, centre=0.005, inertia=0.05, seed=1)
     shares = [b.mass / a.mass for a, b in zip(model.inertias[1:], true.inertias[1:], strict=True)]
     assert 0.01 < np.std(shares) < 0.1
     assert model.inertias[1].mass != true.inertias[1].mass
-    scene = touch_scene(robot, model, "iiwa_link_4", seed=1)
+    scene = touch_scene(robot, "iiwa_link_4", seed=1)
     run = record_quasi_static(robot, scene.contact(robot), [0.0], [scene.q], true_model=true)
     difference = pin.computeGeneralizedGravity(model, model.createData(), scene.q) - (
         pin.computeGeneralizedGravity(true, true.createData(), scene.q)
@@ -249,11 +250,11 @@ def test_another_model_shows_as_false_torque() -> None:
 
 @pytest.mark.parametrize("kind", ["sphere", "cube", "cylinder"])
 def test_physics_follows_the_plan(kind: str) -> None:
-    robot, model = packaged()
-    scene = touch_scene(robot, model, "iiwa_link_4", kind=kind, seed=1)
+    robot = packaged()
+    scene = touch_scene(robot, "iiwa_link_4", kind=kind, seed=1)
     path = joint_exploration(robot, scene, pace=FEW)
     contact = scene.contact(robot, dissipation=1.0)
-    run = record_run(robot, model, contact, path)
+    run = record_run(robot, contact, path)
     np.testing.assert_allclose(run.time, path.time, atol=1e-12)
     assert set(run.link) == {"iiwa_link_4"}
     assert np.abs(run.q - path.q).max() < 0.01
@@ -268,16 +269,17 @@ def test_physics_follows_the_plan(kind: str) -> None:
     late = np.abs(run.external_torque - run.true_external_torque).max()
     size = np.abs(run.true_external_torque).max()
     assert 0.0 < late < 0.25 * size
-    quick = record_run(robot, model, contact, path, observer_gain=500.0)
+    quick = record_run(robot, contact, path, observer_gain=500.0)
     assert np.abs(quick.external_torque - quick.true_external_torque).max() < 0.3 * late
     if kind == "sphere":
-        again = record_run(robot, model, contact, path, rate=50.0)
+        again = record_run(robot, contact, path, rate=50.0)
         np.testing.assert_array_equal(run.external_torque, again.external_torque)
 
 
 def test_physics_with_everything_wrong() -> None:
-    robot, model = packaged()
-    scene = touch_scene(robot, model, "iiwa_link_5", seed=2)
+    robot = packaged()
+    model = robot.model
+    scene = touch_scene(robot, "iiwa_link_5", seed=2)
     path = null_space_exploration(robot, scene, "iiwa_link_7", pace=Pace(motions=2, duration=1.0))
     true = perturbed_model(model, mass=0.05, seed=1)
     options = {
@@ -288,7 +290,7 @@ def test_physics_with_everything_wrong() -> None:
     }
     contact = scene.contact(robot, friction=0.2, dissipation=1.0)
     for way in ("observer", "static"):
-        run = record_run(robot, model, contact, path, external_torque=way, settings={"trial": 3}, **options)
+        run = record_run(robot, contact, path, external_torque=way, settings={"trial": 3}, **options)
         assert set(run.link) <= {"iiwa_link_5", ""}
         off = np.abs(run.external_torque - run.true_external_torque)
         assert 0.1 < off.max() < 0.5 * np.abs(run.true_external_torque).max()
@@ -298,16 +300,16 @@ def test_physics_with_everything_wrong() -> None:
         assert run.settings["error"]["percent"] == 5.0
     for wrong, name in [({"rate": 3e3}, "rate"), ({"external_torque": "guess"}, "external_torque")]:
         with pytest.raises(InputError, match=name):
-            record_run(robot, model, contact, path, **wrong)
+            record_run(robot, contact, path, **wrong)
 
 
 def test_mujoco_contact_gives_the_same_run_on_convex_links() -> None:
-    robot, model = panda()
-    scene = touch_scene(robot, model, "panda_link4", kind="cube", seed=1)
+    robot = panda()
+    scene = touch_scene(robot, "panda_link4", kind="cube", seed=1)
     path = joint_exploration(robot, scene, pace=FEW)
-    ours = record_run(robot, model, scene.contact(robot), path)
+    ours = record_run(robot, scene.contact(robot), path)
     contact = MujocoContact(scene.obstacle, hull_parts(robot, ["panda_link4"]), stiffness=scene.stiffness)
-    theirs = record_run(robot, model, contact, path)
+    theirs = record_run(robot, contact, path)
     assert ours.link == theirs.link
     np.testing.assert_allclose(ours.q, theirs.q, atol=2e-4)
     force = np.linalg.norm(ours.force, axis=1).max()
@@ -317,22 +319,20 @@ def test_mujoco_contact_gives_the_same_run_on_convex_links() -> None:
 
 def test_an_unstable_arm_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)  # MuJoCo writes its warnings into a file
-    robot, model = packaged()
-    scene = touch_scene(robot, model, "iiwa_link_4", seed=1)
+    robot = packaged()
+    scene = touch_scene(robot, "iiwa_link_4", seed=1)
 
     class Wild:
         def torque(self, q, v, desired, desired_v=None, feedforward=None):
             return 1e9 * v + 1e6
 
     with pytest.raises(InputError, match="unstable"):
-        record_run(
-            robot, model, scene.contact(robot), joint_exploration(robot, scene, pace=FEW), controller=Wild()
-        )
+        record_run(robot, scene.contact(robot), joint_exploration(robot, scene, pace=FEW), controller=Wild())
 
 
 def test_runs_are_written_and_read_back(tmp_path: Path) -> None:
-    robot, model = packaged()
-    scene = touch_scene(robot, model, "iiwa_link_4", seed=1)
+    robot = packaged()
+    scene = touch_scene(robot, "iiwa_link_4", seed=1)
     poses = [scene.q, scene.q + 1.0]
     run = record_quasi_static(robot, scene.contact(robot), [0.0, 1.0], poses, settings={"seed": 1})
     run.save(tmp_path / "run.npz")
@@ -356,8 +356,8 @@ def test_runs_are_written_and_read_back(tmp_path: Path) -> None:
 
 
 def test_malformed_files_are_refused(tmp_path: Path) -> None:
-    robot, model = packaged()
-    scene = touch_scene(robot, model, "iiwa_link_4", seed=1)
+    robot = packaged()
+    scene = touch_scene(robot, "iiwa_link_4", seed=1)
     good = tmp_path / "good.npz"
     run = record_quasi_static(robot, scene.contact(robot), [0.0], [scene.q])
     run.save(good)

@@ -13,6 +13,7 @@ pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install c
 
 import mujoco
 
+from contactsense import Robot
 from contactsense.errors import InputError, ModelError
 from contactsense.sim import (
     FLOOR_TYPE,
@@ -24,7 +25,6 @@ from contactsense.sim import (
     WrenchNoise,
     mjcf_tree,
     named_geoms,
-    named_model,
 )
 from contactsense.sim.atlas import FEET, SENSOR_LINKS, controller, posture
 
@@ -52,7 +52,7 @@ def _turned() -> np.ndarray:
 
 def _standing(**options: object) -> SimulatedRobot:
     geoms = named_geoms("atlas", conaffinity=FLOOR_TYPE)
-    return SimulatedRobot(named_model("atlas"), geoms=geoms, floor=Floor(), sensors=SENSORS, **options)
+    return SimulatedRobot(Robot.named("atlas").model, geoms=geoms, floor=Floor(), sensors=SENSORS, **options)
 
 
 def _load(model: pin.Model, link: str, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
@@ -63,7 +63,7 @@ def _load(model: pin.Model, link: str, q: np.ndarray, v: np.ndarray, a: np.ndarr
 
 
 def test_loads_in_free_flight_are_those_of_newton_and_euler() -> None:
-    model = named_model("atlas")
+    model = Robot.named("atlas").model
     pose = _turned()
     sensors = (*SENSORS, Sensor("turned", "r_ufarm", pose), Sensor("held", "l_hand", None, "support"))
     robot = SimulatedRobot(model, sensors=sensors)
@@ -93,7 +93,7 @@ def test_a_hand_at_rest_gives_its_weight() -> None:
 
 
 def test_readings_are_the_mean_over_the_jump_of_the_torque() -> None:
-    model = named_model("atlas")
+    model = Robot.named("atlas").model
     robot = SimulatedRobot(model, sensors=SENSORS)
     first, second = np.random.default_rng(1).normal(scale=5.0, size=(2, 30))
     robot.step(first)
@@ -179,8 +179,8 @@ def test_wrench_noise_has_its_size_and_repeats() -> None:
     np.testing.assert_allclose(drawn.std(axis=0), [[2.0] * 3 + [0.1] * 3] * 2, rtol=0.03)
     again = WrenchNoise(newtons=2.0, newton_metres=0.1, seed=3)
     np.testing.assert_array_equal(drawn[0], again.measure(wrenches))
-    clean = SimulatedRobot(named_model("atlas"), sensors=SENSORS)
-    noisy = SimulatedRobot(named_model("atlas"), sensors=SENSORS, wrench_noise=again)
+    clean = SimulatedRobot(Robot.named("atlas").model, sensors=SENSORS)
+    noisy = SimulatedRobot(Robot.named("atlas").model, sensors=SENSORS, wrench_noise=again)
     error = noisy.step(np.ones(30)).wrenches - clean.step(np.ones(30)).wrenches
     assert 0.5 < error[:, :3].std() < 4.0
     np.testing.assert_array_equal(clean.q, noisy.q)
@@ -188,7 +188,7 @@ def test_wrench_noise_has_its_size_and_repeats() -> None:
 
 def test_links_do_not_collide_with_each_other_and_without_a_floor_it_falls() -> None:
     geoms = named_geoms("atlas", conaffinity=FLOOR_TYPE)
-    robot = SimulatedRobot(named_model("atlas"), geoms=geoms)
+    robot = SimulatedRobot(Robot.named("atlas").model, geoms=geoms)
     for _ in range(100):
         robot.step(np.zeros(30))
         assert robot.mj_data.ncon == 0
@@ -197,7 +197,7 @@ def test_links_do_not_collide_with_each_other_and_without_a_floor_it_falls() -> 
 
 
 def test_wrong_arguments_are_named() -> None:
-    model = named_model("atlas")
+    model = Robot.named("atlas").model
     with pytest.raises(InputError, match=r"sensors: 'a' sits before link 'pelvis'.*moving joint"):
         SimulatedRobot(model, sensors=[Sensor("a", "pelvis")])
     with pytest.raises(InputError, match=r"sensors: 'a' .*'tail', which does not exist"):
@@ -215,7 +215,7 @@ def test_wrong_arguments_are_named() -> None:
     q = posture(model, 0)
     StandingController(model, q, soles)
     with pytest.raises(ModelError, match="free base"):
-        StandingController(named_model("iiwa14"), np.zeros(7), soles)
+        StandingController(Robot.named("iiwa14").model, np.zeros(7), soles)
     with pytest.raises(ModelError, match="six joints of its own"):
         StandingController(model, q, [*soles, Sole("l_talus", np.zeros(3), (0.1, 0.05))])
     with pytest.raises(InputError, match="soles: no link 'tail'"):
@@ -227,7 +227,7 @@ def test_wrong_arguments_are_named() -> None:
 
 
 def test_sensors_of_an_own_world_are_read() -> None:
-    model = named_model("atlas")
+    model = Robot.named("atlas").model
     text = ET.tostring(mjcf_tree(model, floor=Floor(), sensors=SENSORS), encoding="unicode")
     robot = SimulatedRobot(model, mjcf=text, sensors=SENSORS[::-1])
     assert mujoco.mj_name2id(robot.mj_model, mujoco.mjtObj.mjOBJ_GEOM, "floor") >= 0

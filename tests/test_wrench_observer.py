@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install contactsense[sim]")
 
 import contactsense as cs
-from contactsense.sim import FLOOR_TYPE, Floor, Push, SimulatedRobot, named_geoms, named_model
+from contactsense.sim import FLOOR_TYPE, Floor, Push, SimulatedRobot, named_geoms
 from contactsense.sim.atlas import FEET, SENSORS, controller, posture
 
 DT, GAIN = 1e-3, 500.0
@@ -36,7 +36,8 @@ class Run:
 @lru_cache
 def run(name: str, *, watched_from: int = 100) -> Run:
     """A push on Atlas, which stands; monitored for 100 ms or less before it begins at 50 ms."""
-    push, robot, model = PUSHES[name], cs.Robot.named("atlas"), named_model("atlas")
+    push, robot = PUSHES[name], cs.Robot.named("atlas")
+    model = robot.model
     q = posture(model, 7)
     control = controller(model, q)
     geoms = named_geoms("atlas", conaffinity=FLOOR_TYPE)
@@ -115,7 +116,8 @@ def test_it_starts_without_a_false_contact() -> None:
 @pytest.mark.parametrize("silent", [(0, 1), (0, 4), (0, 40), (30, 80)])
 def test_a_wanted_sensor_that_comes_back_raises_no_alarm(gain: float, silent: tuple[int, int]) -> None:
     """1700 N stand on sensors that say nothing at first, or for a while."""
-    robot, model = cs.Robot.named("atlas"), named_model("atlas")
+    robot = cs.Robot.named("atlas")
+    model = robot.model
     q = posture(model, 7)
     control = controller(model, q)
     geoms = named_geoms("atlas", conaffinity=FLOOR_TYPE)

@@ -66,7 +66,9 @@ def _checked_urdf(
     floating_base: bool,
     geometry: str,
     missing_meshes: str,
-) -> tuple[str, list[tuple[str, int, tuple[Any, tuple[Any, ...]]]], list[str]]: ...
+) -> tuple[str, list[tuple[str, int, tuple[Any, tuple[Any, ...]]]], list[str]]:
+    """Text for Pinocchio, its shapes that stand for others, and warnings (`contactsense::load::CheckedUrdf`)."""
+
 def _robot_from_urdf(
     path: str | PathLike[str],
     package_dirs: Sequence[str | PathLike[str]] = ...,
@@ -76,11 +78,13 @@ def _robot_from_urdf(
     gravity: Sequence[float] = ...,
     armature: Sequence[tuple[str, float]] = ...,
     missing_meshes: str = "error",
-) -> Robot: ...
+) -> Robot:
+    """A robot read without Pinocchio."""
 
 @disjoint_base
 class Robot:
     """A robot: immutable, shareable between threads."""
+
     def __new__(cls, description: tuple[Any, ...] | Robot) -> Self: ...
     @property
     def name(self) -> str:
@@ -1151,8 +1155,8 @@ class ContactParticleFilter:
         torque_noise: Standard deviation of the torque at rest, scalar or `(nv,)` [Nm; N for sliding joints]. Greater noise
             is learnt from what is left over.
         relative_noise: Standard deviation relative to the torque.
-        torque_threshold: Below it on every joint there is no contact, scalar or `(nv,)` [Nm; N for sliding joints]. None:
-            three standard deviations at rest, 0.06 for the default noise.
+        torque_threshold: Below it on every joint there is no contact, scalar or `(nv,)` [Nm; N for sliding joints]. By
+            default three standard deviations at rest where these are more; with `noise` always these.
         noise: A `NoiseModel` in place of `torque_noise` and `relative_noise`.
 
     Raises:

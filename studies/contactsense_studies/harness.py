@@ -93,13 +93,9 @@ def add_study(app: typer.Typer, name: str, text: str, options: Any) -> None:
     own = {}
     for field in fields(options):
         kind, option = get_args(get_type_hints(options, include_extras=True)[field.name])
-        # Typer knows no tuple of any length.
-        repeated = field.default == ()
-        own[field.name] = (
-            (Annotated[list[str] | None, option], None)
-            if repeated
-            else (Annotated[kind, option], field.default)
-        )
+        own[field.name] = (Annotated[kind, option], field.default)
+        if field.default == ():  # Typer knows no tuple of any length
+            own[field.name] = (Annotated[list[str] | None, option], None)
     command.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
         [
             inspect.Parameter(key, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)

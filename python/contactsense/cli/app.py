@@ -38,7 +38,7 @@ class _Commands(TyperGroup):
 app = typer.Typer(
     cls=_Commands,
     name="contactsense",
-    help="A robot's sense of touch over its whole body from what it already measures.",
+    help="Contacts anywhere on a robot, detected from joint positions, velocities and torques.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,

@@ -1,4 +1,4 @@
-"""A simulated robot is hit: what it feels, against the truth.
+"""Contacts on a simulated robot: what is estimated, against the truth.
 
 "iiwa14" is an arm that is hit while it moves fast; "atlas" a humanoid that is pushed while it stands.
 
@@ -8,27 +8,18 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from .._extras import require
 from ..errors import InputError
 from .result import DemoResult, HitResult, Progress, as_data
-from .settings import Noise
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = [
-    "ROBOTS",
-    "DemoResult",
-    "HitResult",
-    "Noise",
-    "Progress",
-    "as_data",
-    "run",
-    "save_picture",
-]
+__all__ = ["ROBOTS", "DemoResult", "HitResult", "Progress", "as_data", "run", "save_picture"]
 
 ROBOTS = ("iiwa14", "atlas")
 
@@ -61,16 +52,26 @@ def run(
     if seed < 0:
         raise InputError(f"seed: must be zero or positive, not {seed}")
     require("demo", "mujoco")
-    if robot == "atlas":
-        from .atlas.experiment import run_experiment as run_standing
-        from .atlas.settings import SensorNoise
+    from ..sim import TorqueNoise, WrenchNoise
+    from . import arm, humanoid
+    from .loop import run_loop
 
-        return run_standing(seed, Noise(*noise), SensorNoise(*sensor_noise), gain, on_progress)
-    if any(sensor_noise):
-        raise InputError(f"sensor_noise: '{robot}' has no force/torque sensors; leave it at zero")
-    from .experiment import run_experiment
+    with _naming("noise"):
+        torque_noise = TorqueNoise(percent=noise[0], newton_metres=noise[1], seed=seed)
+    with _naming("sensor_noise"):
+        wrench_noise = WrenchNoise(newtons=sensor_noise[0], newton_metres=sensor_noise[1], seed=seed)
+    prepare = humanoid.prepare if robot == humanoid.NAME else arm.prepare
+    setup = prepare(seed, torque_noise, wrench_noise, gain)
+    return run_loop(setup, seed, torque_noise, wrench_noise, on_progress)
 
-    return run_experiment(robot, seed, Noise(*noise), gain, on_progress)
+
+@contextmanager
+def _naming(argument: str) -> Iterator[None]:
+    """Names the argument in errors about a part of it."""
+    try:
+        yield
+    except InputError as cause:
+        raise InputError(f"{argument}: {cause}") from None
 
 
 def save_picture(result: DemoResult, path: str | os.PathLike[str]) -> Path:
@@ -81,10 +82,6 @@ def save_picture(result: DemoResult, path: str | os.PathLike[str]) -> Path:
         MissingExtraError: matplotlib is not installed.
     """
     require("demo", "matplotlib")
-    if result.standing is not None:
-        from .atlas.figure import save_figure as save_standing
-
-        return save_standing(result, path)
     from .figure import save_figure
 
     return save_figure(result, path)

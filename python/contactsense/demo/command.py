@@ -20,24 +20,24 @@ def register(parent: typer.Typer) -> None:
 
 def command(
     robot: Annotated[
-        str, typer.Option(help="Robot to simulate: iiwa14, an arm in motion; atlas, a humanoid that stands.")
+        str, typer.Option(help="Robot to simulate: iiwa14, an arm in motion, or atlas, a standing humanoid.")
     ] = "iiwa14",
-    seed: Annotated[int, typer.Option(help="Of motion, hits and noise; same seed, same result.")] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of the motion, the contacts and the noise.")] = 0,
     noise: Annotated[
         tuple[float, float],
         typer.Option(help="Standard deviation of the measured torques: percent of the torque, and Nm."),
     ] = (0.0, 0.0),
     sensor_noise: Annotated[
         tuple[float, float],
-        typer.Option(help="The same of atlas's force/torque sensors: N, and Nm."),
+        typer.Option(help="Standard deviation of the force/torque sensors of atlas: N, and Nm."),
     ] = (0.0, 0.0),
     gain: Annotated[
-        float | None, typer.Option(help="Observer gain [1/s]; by default 500, with noise 250.")
+        float | None, typer.Option(help="Observer gain in 1/s (default: 500, or 250 with noise).")
     ] = None,
-    out: Annotated[Path, typer.Option(help="Picture to write.")] = Path("contactsense_demo.png"),
-    as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON only.")] = False,
+    out: Annotated[Path, typer.Option(help="File to write the picture to.")] = Path("contactsense_demo.png"),
+    as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
-    """Hit a simulated robot; show what it feels against the truth."""
+    """Simulate contacts on a robot and compare what is estimated with the truth."""
     require("demo", "mujoco", "matplotlib", "rich")
     target = picture_file("out", out)
     from rich.console import Console

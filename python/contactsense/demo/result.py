@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .settings import FloatArray, Noise, Settings
+from .settings import FloatArray, Settings
 
 if TYPE_CHECKING:
     from ..robot import Robot
+    from ..sim import TorqueNoise, WrenchNoise
 
 
 @dataclass(frozen=True)
@@ -66,8 +67,6 @@ class Standing:
     ground: FloatArray  # (n, feet) measured force of the ground, a row a tick [N]
     moved: float  # largest way of the base [m]
     turned: float  # largest angle of the base [rad]
-    sensor_noise: tuple[float, float]  # standard deviations [N], [Nm]
-    wrench_threshold: FloatArray  # (sensors, 6) [N], [Nm]
 
     @property
     def kept(self) -> bool:
@@ -92,14 +91,15 @@ class DemoResult:
     robot_name: str
     robot: Robot
     seed: int
-    noise: Noise
+    noise: TorqueNoise
+    sensor_noise: WrenchNoise
     settings: Settings
     planned_speed: float  # fastest joint of the planned motion; zero where it stands [rad/s]
     hits: tuple[HitResult, ...]
     false_alarms: int
     signals: Signals
     timing: Timing
-    standing: Standing | None = None  # of a humanoid
+    standing: Standing | None  # of a humanoid
 
     @property
     def detected(self) -> int:
@@ -130,7 +130,7 @@ def as_data(result: DemoResult) -> dict[str, Any]:
     """Plain numbers and texts, for JSON; None where there is no estimate."""
     data = _common_data(result)
     if result.standing is not None:
-        data["standing"] = _standing_data(result.standing)
+        data["standing"] = _standing_data(result, result.standing)
     return data
 
 
@@ -164,15 +164,15 @@ def _common_data(result: DemoResult) -> dict[str, Any]:
     }
 
 
-def _standing_data(standing: Standing) -> dict[str, Any]:
-    newtons, newton_metres = standing.sensor_noise
+def _standing_data(result: DemoResult, standing: Standing) -> dict[str, Any]:
+    noise = result.sensor_noise
     return {
         "kept": standing.kept,
         "base_moved_mm": 1e3 * standing.moved,
         "base_turned_deg": float(np.degrees(standing.turned)),
         "wanted_contacts": list(standing.feet),
-        "sensor_noise": {"newtons": newtons, "newton_metres": newton_metres},
-        "wrench_threshold": standing.wrench_threshold.tolist(),
+        "sensor_noise": {"newtons": noise.newtons, "newton_metres": noise.newton_metres},
+        "wrench_threshold": result.settings.wrench_threshold.tolist(),
     }
 
 

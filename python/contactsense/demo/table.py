@@ -11,8 +11,9 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
+from .arm import FLOOR
 from .result import DemoResult, HitResult, Progress, Standing
-from .settings import DEVIATIONS, FLOOR, Settings
+from .settings import DEVIATIONS, Settings
 
 # Header, and whether the column is aligned to the right.
 _COLUMNS = (
@@ -22,13 +23,13 @@ _COLUMNS = (
     ("named link", False),
     ("point", False),
     ("off by\n[mm]", True),
-    ("± said\n[mm]", True),
+    ("± std\n[mm]", True),
     ("force\noff [%]", True),
     ("delay\n[ms]", True),
 )
 _NOTES = (
     "An estimate is that of the tick with the largest torques. Point off by: distance to the true point "
-    "then; ± said: the standard deviation that the monitor itself gives. Force off: the vector against the "
+    "then; ± std: the standard deviation that the monitor itself gives. Force off: the vector against the "
     "true peak, including what the observer smooths away. Delay: from the start of the force to detection. "
     "Open: fewer than six joints lie before the link, or torques are too small against their errors, to "
     "tell point and force."
@@ -42,7 +43,9 @@ class LiveTable:
         self._live = live
 
     def __call__(self, progress: Progress) -> None:
-        sensed = Text(f"feels {progress.sensed}", style="bold yellow") if progress.sensed else Text("free")
+        sensed = (
+            Text(f"contact on {progress.sensed}", style="bold yellow") if progress.sensed else Text("free")
+        )
         status = Text(f"{progress.time:4.1f} of {progress.end:.0f} s   ").append_text(sensed)
         self._live.update(Group(hit_table(progress.hits, progress.planned), status))
 
@@ -69,7 +72,7 @@ def hit_table(hits: Sequence[HitResult], rows: int = 0) -> Table:
 def _cells(hit: HitResult) -> list[RenderableType]:
     named: RenderableType
     if hit.named is None:
-        named = Text("not felt" if hit.delay is None else "none", style="red")
+        named = Text("not detected" if hit.delay is None else "none", style="red")
     else:
         named = Text(hit.named, style="green" if hit.link_right else "red")
     return [
@@ -102,7 +105,7 @@ def settings_text(result: DemoResult) -> str:
 
 
 def _standing_settings_text(settings: Settings, standing: Standing) -> str:
-    torque, wrench = settings.torque_threshold, standing.wrench_threshold
+    torque, wrench = settings.torque_threshold, settings.wrench_threshold
     return (
         f"Observer gain {settings.observer_gain:.0f}/s; thresholds: base {torque[:3].max():.1f} N and "
         f"{torque[3:6].max():.1f} Nm, joints {torque[6:].min():.1f} to {torque[6:].max():.1f} Nm, "
@@ -117,8 +120,9 @@ def _headline(result: DemoResult) -> str:
     text = f"seed {result.seed}, torque noise {noise.percent:g} % and {noise.newton_metres:g} Nm"
     if standing is None:
         return f"{result.robot_name} at up to {result.planned_speed:.1f} rad/s, {text}"
-    newtons, newton_metres = standing.sensor_noise
-    return f"{result.robot_name} stands, {text}, sensor noise {newtons:g} N and {newton_metres:g} Nm"
+    sensors = result.sensor_noise
+    own = f"sensor noise {sensors.newtons:g} N and {sensors.newton_metres:g} Nm"
+    return f"{result.robot_name} stands, {text}, {own}"
 
 
 def print_result(console: Console, result: DemoResult, picture: str) -> None:
@@ -135,7 +139,7 @@ def summary_text(result: DemoResult) -> str:
     """One line or two."""
     located = result.located
     text = (
-        f"{result.detected} of {len(result.hits)} hits felt, {result.links_right} links named right, "
+        f"{result.detected} of {len(result.hits)} hits detected, {result.links_right} links named right, "
         f"{len(located)} located"
     )
     errors = sorted(1e3 * hit.point_error for hit in located if hit.point_error is not None)

@@ -8,11 +8,10 @@ from .deepest import ContactQuery, DeepestPoint
 from .disturbance import TorqueError, perturbed_model
 from .exploration import joint_exploration, null_space_exploration, sliding_exploration
 from .floor import FLOOR_TYPE, Floor
-from .geoms import Geom, geoms_of
+from .geoms import Geom, geoms_of, named_geoms
 from .impedance import HandImpedanceController, ImpedanceController
 from .measurement import Measurement
 from .mjcf import mjcf_string, mjcf_tree
-from .models import model_from_urdf, named_geoms, named_model
 from .mujoco_contact import ConvexPart, MujocoContact, hull_parts
 from .noise import TorqueNoise, WrenchNoise
 from .obstacles import CubeObstacle, CylinderObstacle, Obstacle, SphereObstacle, obstacle_from_dict
@@ -66,9 +65,7 @@ __all__ = [
     "joint_torque",
     "mjcf_string",
     "mjcf_tree",
-    "model_from_urdf",
     "named_geoms",
-    "named_model",
     "null_space_exploration",
     "obstacle_from_dict",
     "perturbed_model",

@@ -46,3 +46,11 @@ def not_negative(name: str, value: float) -> float:
     if not (np.isfinite(value) and value >= 0):
         raise InputError(f"{name} must be zero or a positive number, not {value}")
     return float(value)
+
+
+def gains(name: str, value: ArrayLike, size: int) -> FloatArray:
+    """One gain for all, or one for each of `size`; zero or above."""
+    array = vector(name, np.broadcast_to(np.asarray(value, dtype=np.float64), (size,)), size)
+    if (array < 0).any():
+        raise InputError(f"{name} must not be negative")
+    return array

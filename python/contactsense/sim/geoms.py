@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from contactsense import Robot
 from contactsense.errors import GeometryError
 from contactsense.loading.description import GeometryTuple, LinkTuple
 
@@ -68,3 +69,8 @@ def _geom(link: LinkTuple, name: str, shape: GeometryTuple, masks: dict[str, Any
     raise GeometryError(
         f"link '{link.name}' has a mesh; only boxes, spheres, cylinders, capsules are simulated"
     )
+
+
+def named_geoms(name: str, *, contype: int = 0, conaffinity: int = 0) -> tuple[Geom, ...]:
+    """The shapes of a robot described in this package; masks as in `geoms_of`."""
+    return geoms_of(Robot.named(name)._description.links, contype=contype, conaffinity=conaffinity)

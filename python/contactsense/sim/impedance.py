@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from contactsense.errors import InputError
 
-from ._arrays import FloatArray, not_negative, positive, vector
+from ._arrays import FloatArray, gains, not_negative, positive
 
 _AXES = pin.LOCAL_WORLD_ALIGNED
 
@@ -38,7 +38,9 @@ class ImpedanceController:
     ) -> None:
         _fixed(model)
         self._model, self._data = model, model.createData()
-        self.stiffness = _gains("stiffness", stiffness, model.nv)
+        self.stiffness = gains("stiffness", stiffness, model.nv)
+        if not self.stiffness.all():
+            raise InputError("stiffness must be positive")
         self.damping_ratio = not_negative("damping_ratio", damping_ratio)
         self.bandwidth = positive("bandwidth", bandwidth)
 
@@ -63,7 +65,7 @@ class ImpedanceController:
         return torque if feedforward is None else torque + feedforward
 
 
-class HandImpedanceController:
+class HandImpedanceController(ImpedanceController):
     """A hand held by a spring in its six directions; the joints are drawn to `q_d` in what is left free.
 
     `tau = J^T (K_x e + D_x J (v_d - v)) + N^T (K (q_d - q) + D (v_d - v)) + C v + g`, where the hand's pose
@@ -94,16 +96,12 @@ class HandImpedanceController:
         damping_ratio: float = 0.7,
         bandwidth: float = 150.0,
     ) -> None:
-        _fixed(model)
+        super().__init__(model, stiffness=stiffness, damping_ratio=damping_ratio, bandwidth=bandwidth)
         if not model.existFrame(link, pin.FrameType.BODY):
             raise InputError(f"link: no link '{link}'")
-        self._model, self._data = model, model.createData()
         self._frame = model.getFrameId(link, pin.FrameType.BODY)
         sizes = [positive("translation", translation)] * 3 + [positive("rotation", rotation)] * 3
         self._hand_stiffness = np.array(sizes)
-        self.stiffness = _gains("stiffness", stiffness, model.nv)
-        self.damping_ratio = not_negative("damping_ratio", damping_ratio)
-        self.bandwidth = positive("bandwidth", bandwidth)
 
     def torque(
         self,
@@ -155,10 +153,3 @@ def _gains_at(
 def _fixed(model: pin.Model) -> None:
     if model.nq != model.nv:
         raise InputError("model: impedance control needs a fixed base and joints with one coordinate each")
-
-
-def _gains(name: str, value: ArrayLike, size: int) -> FloatArray:
-    gains = vector(name, np.broadcast_to(np.asarray(value, dtype=np.float64), (size,)), size)
-    if (gains <= 0).any():
-        raise InputError(f"{name} must be positive")
-    return gains

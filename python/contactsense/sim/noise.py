@@ -21,6 +21,15 @@ class TorqueNoise:
         self.newton_metres = not_negative("newton_metres", newton_metres)
         self._generator = np.random.default_rng(seed)
 
+    @property
+    def none(self) -> bool:
+        """Whether torques are measured without an error."""
+        return self.percent == 0.0 and self.newton_metres == 0.0
+
+    def deviation(self, tau: FloatArray) -> FloatArray:
+        """Standard deviation [Nm] at `tau` [Nm], same shape."""
+        return np.hypot(0.01 * self.percent * tau, self.newton_metres)
+
     def measure(self, tau: FloatArray) -> FloatArray:
         """`tau` (n,) as a sensor would read it."""
         relative, absolute = self._generator.standard_normal((2, tau.size))
@@ -42,8 +51,17 @@ class WrenchNoise:
         self.newton_metres = not_negative("newton_metres", newton_metres)
         self._generator = np.random.default_rng(seed)
 
+    @property
+    def none(self) -> bool:
+        """Whether wrenches are measured without an error."""
+        return self.newtons == 0.0 and self.newton_metres == 0.0
+
+    @property
+    def deviation(self) -> FloatArray:
+        """(6,) standard deviation of a wrench [N, Nm]."""
+        return np.repeat(np.array([self.newtons, self.newton_metres]), 3)
+
     def measure(self, wrenches: FloatArray) -> FloatArray:
         """`wrenches` (n, 6) as sensors would read them."""
-        deviation = np.repeat([self.newtons, self.newton_metres], 3)
-        measured: FloatArray = wrenches + deviation * self._generator.standard_normal(wrenches.shape)
+        measured: FloatArray = wrenches + self.deviation * self._generator.standard_normal(wrenches.shape)
         return measured

@@ -36,7 +36,6 @@ class SoftController(Protocol):
 
 def record_run(
     robot: Robot,
-    model: pin.Model,
     contact: PenaltyContact | MujocoContact,
     path: ContactPath,
     *,
@@ -57,12 +56,11 @@ def record_run(
     which the contact is planned to push back: a soft arm alone would stop short of the obstacle.
 
     Args:
-        robot: what is known of the arm: the observer uses it.
-        model: the same for the controller.
+        robot: what is known of the arm: the observer and the controller use it.
         contact: `PenaltyContact`, at the deepest point of the true surface, or `MujocoContact`.
         path: see `joint_exploration` and its like.
-        controller: `ImpedanceController(model)` by default.
-        true_model: the arm as it is (see `perturbed_model`), which is simulated; `model` by default.
+        controller: `ImpedanceController(robot.model)` by default.
+        true_model: the arm as it is (see `perturbed_model`), which is simulated; `robot.model` by default.
         error: added to the recorded external torque, once a sample.
         sensor_noise: of the measured motor torques at every tick; what of it gets through depends on
             `external_torque`.
@@ -83,10 +81,8 @@ def record_run(
         )
     if external_torque not in ("observer", "static"):
         raise InputError(f"external_torque must be 'observer' or 'static', not {external_torque!r}")
-    if (model.nq, model.nv) != (robot.nq, robot.nv):
-        raise InputError(f"model: has {model.nq} coordinates, the robot {robot.nq}")
-    control = controller or ImpedanceController(model)
-    arm = contact.arm(true_model or model, dt=dt, noise=sensor_noise)
+    control = controller or ImpedanceController(robot.model)
+    arm = contact.arm(true_model or robot.model, dt=dt, noise=sensor_noise)
     observer = MomentumObserver(robot, dt=dt, gain=observer_gain)
     arm.reset(path.q[0])
     still = np.zeros(robot.nv)

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 
 from contactsense import Robot
@@ -19,13 +17,6 @@ FORCES = (1.0, 50.0)  # [N]
 BATCHES = 40
 TRIES, POINTS_PER_POSE = 300, 10  # of `touches`
 SLIDE = 0.05  # [m/rad] what a sliding joint moves in a random pose where another would turn
-
-_JOINTS = {
-    "free_flyer": pin.JointModelFreeFlyer,
-    "revolute": pin.JointModelRZ,
-    "continuous": pin.JointModelRUBZ,
-    "prismatic": pin.JointModelPZ,
-}
 
 
 @dataclass(frozen=True)
@@ -46,22 +37,7 @@ def random_configuration(robot: Robot, rng: np.random.Generator) -> FloatArray:
     step = rng.uniform(-1.0, 1.0, robot.nv) * (np.pi / 2)
     joints, sliding = robot.joint_kinds[int(robot.floating_base) :], np.zeros(robot.nv, dtype=bool)
     sliding[robot.nv - len(joints) :] = [kind == "prismatic" for kind in joints]
-    return integrate(robot, robot.neutral(), np.where(sliding, SLIDE * step, step))
-
-
-def integrate(robot: Robot, q: FloatArray, step: FloatArray) -> FloatArray:
-    """`q` moved by `step` `(nv,)` on the robot's configuration space, as `pinocchio.integrate`."""
-    moved: FloatArray = pin.integrate(_joints(tuple(robot.joint_kinds)), q, step)
-    return moved
-
-
-@lru_cache(maxsize=16)
-def _joints(kinds: tuple[str, ...]) -> pin.Model:
-    """A model of the same joints, of which only the configuration space matters."""
-    model = pin.Model()
-    for number, kind in enumerate(kinds):
-        model.addJoint(number, _JOINTS[kind](), pin.SE3.Identity(), f"joint {number}")
-    return model
+    return robot.integrate(robot.neutral(), np.where(sliding, SLIDE * step, step))
 
 
 def blocked(

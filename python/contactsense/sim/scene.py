@@ -52,7 +52,6 @@ class TouchScene:
 
 def touch_scene(
     robot: Robot,
-    model: pin.Model,
     link: str,
     *,
     kind: ObstacleKind = "sphere",
@@ -72,8 +71,8 @@ def touch_scene(
     uniform by area only among those that can be touched and felt.
 
     Args:
-        model: of the same robot; gives the joints' limits, the middle 90 % of which is drawn from (a turn
-            about zero where there are none).
+        robot: poses are drawn from the middle 90 % of its joints' limits (a turn about zero where there are
+            none).
         kind: "sphere"; "cube", with an edge towards the link; "cylinder", a pole across it in a random
             way.
         q: (nq,) this pose instead of a random one.
@@ -89,8 +88,6 @@ def touch_scene(
     """
     if link not in moving_links(robot):
         raise InputError(f"link: '{link}' has no surface or does not move")
-    if (model.nq, model.nv) != (robot.nq, robot.nv):
-        raise InputError(f"model: has {model.nq} coordinates, the robot {robot.nq}")
     if kind not in ("sphere", "cube", "cylinder"):
         raise InputError(f"kind must be sphere, cube or cylinder, not {kind!r}")
     ranges = {"force_range": force_range, "radius_range": radius_range, "stiffness_range": stiffness_range}
@@ -100,7 +97,7 @@ def touch_scene(
     rng = np.random.default_rng(seed)
     fixed = None if q is None else vector("q", q, robot.nq)
     for _ in range(_TRIES // _POINTS):
-        pose = _random_pose(model, rng) if fixed is None else fixed
+        pose = _random_pose(robot.model, rng) if fixed is None else fixed
         for _ in range(_POINTS):
             force = rng.uniform(*force_range)
             size, stiffness = _log_uniform(rng, radius_range), _log_uniform(rng, stiffness_range)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from contactsense.errors import InputError, ModelError
 
-from ._arrays import FloatArray, not_negative, vector
+from ._arrays import FloatArray, gains, not_negative, vector
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class StandingController:
             raise ModelError("model: standing needs a free base as the first joint")
         self._model, self._data = model, model.createData()
         self._posture = vector("posture", posture, model.nq)
-        self._kp, self._kd = _gains("kp", kp, model.nv), _gains("kd", kd, model.nv)
+        self._kp, self._kd = gains("kp", kp, model.nv), gains("kd", kd, model.nv)
         self._damping = not_negative("leg_damping", leg_damping)
         self._soles = tuple(soles)
         self._frames = [_frame(model, sole.link) for sole in self._soles]
@@ -118,13 +118,6 @@ class StandingController:
 
 
 _AXES = pin.LOCAL_WORLD_ALIGNED
-
-
-def _gains(name: str, value: ArrayLike, size: int) -> FloatArray:
-    gains = vector(name, np.broadcast_to(np.asarray(value, dtype=np.float64), (size,)), size)
-    if (gains < 0).any():
-        raise InputError(f"{name} must not be negative")
-    return gains
 
 
 def _frame(model: pin.Model, link: str) -> int:

@@ -71,7 +71,6 @@ def _scene(arm: Arm, experiment: Experiment, link: str, number: int, seed: int) 
     chosen = experiment.setup != "random"
     return touch_scene(
         arm.robot,
-        arm.model,
         link,
         kind=experiment.obstacle,
         q=_pose(arm, number) if chosen else None,
@@ -83,8 +82,8 @@ def _scene(arm: Arm, experiment: Experiment, link: str, number: int, seed: int) 
 
 
 def _pose(arm: Arm, number: int) -> FloatArray:
-    low = np.maximum(arm.model.lowerPositionLimit, -np.pi)
-    high = np.minimum(arm.model.upperPositionLimit, np.pi)
+    low = np.maximum(arm.robot.model.lowerPositionLimit, -np.pi)
+    high = np.minimum(arm.robot.model.upperPositionLimit, np.pi)
     shares = np.resize(POSES[number % len(POSES)], arm.robot.nq)
     pose: FloatArray = 0.5 * (low + high) + 0.5 * shares * (high - low)
     return pose
@@ -100,20 +99,18 @@ def _path(arm: Arm, experiment: Experiment, scene: TouchScene, seed: int) -> Con
 
 
 def _record(arm: Arm, experiment: Experiment, scene: TouchScene, path: ContactPath, seed: int) -> ContactRun:
-    true_model = arm.model
+    true_model = arm.robot.model
     if experiment.model_error:
-        true_model = perturbed_model(arm.model, mass=experiment.model_error, seed=seed)
+        true_model = perturbed_model(arm.robot.model, mass=experiment.model_error, seed=seed)
     contact = scene.contact(arm.robot, friction=experiment.friction)
-    run = record_run(
-        arm.robot, arm.model, contact, path, true_model=true_model, observer_gain=OBSERVER_GAIN, rate=RATE
-    )
+    run = record_run(arm.robot, contact, path, true_model=true_model, observer_gain=OBSERVER_GAIN, rate=RATE)
     # What is felt in the first pose without a contact is known before there is one.
     return replace(run, external_torque=run.external_torque - _offset(arm, true_model, path.q[0]))
 
 
 def _offset(arm: Arm, true_model: Any, q: FloatArray) -> FloatArray:
     """External torque that an arm of other weight seems to feel at rest."""
-    weight, known = (gravity_torques(model, q[None])[0] for model in (true_model, arm.model))
+    weight, known = (gravity_torques(model, q[None])[0] for model in (true_model, arm.robot.model))
     offset: FloatArray = known - weight
     return offset
 

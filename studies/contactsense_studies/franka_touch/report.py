@@ -56,10 +56,8 @@ def table(evaluation: Evaluation) -> Table:
 
 def touch_table(study: Study) -> Table:
     """One row a touch, both evaluations side by side."""
-    labels, figures = ("file", "link", "label, s"), ("\nonset, ms", "link\nnamed")
-    result = sheet(
-        "Every touch", labels, (f"observer:{figures[0]}", figures[1], f"vendor:{figures[0]}", figures[1])
-    )
+    figures = ("observer:\nonset, ms", "link\nnamed", "vendor:\nonset, ms", "link\nnamed")
+    result = sheet("Every touch", ("file", "link", "label, s"), figures)
     for own, other in zip(study.measured.logs, study.vendor.logs, strict=True):
         for mine, theirs in zip(own.touches, other.touches, strict=True):
             label = f"{mine.start:.2f} to {mine.end:.2f}"
@@ -70,7 +68,7 @@ def touch_table(study: Study) -> Table:
 
 
 def _touch_cells(touch: TouchResult, link: int) -> tuple[Text, Text]:
-    delay = Text("not felt", "red") if touch.delay is None else Text(f"{1e3 * touch.delay:.0f}")
+    delay = Text("missed", "red") if touch.delay is None else Text(f"{1e3 * touch.delay:.0f}")
     place = "+" if touch.located else " "
     named = Text(
         "-" if touch.link is None else f"{touch.link}{place}", "green" if touch.link == link else "red"

@@ -13,8 +13,8 @@ from contactsense.sim._arrays import FloatArray
 from contactsense.sim.atlas import SENSOR_LINKS
 
 from .instruments import Method, external_torque, external_wrenches, sensor_links
-from .isolation import Setting, make_isolator, make_sensors
-from .physics import pinocchio_atlas, simulate
+from .isolation import Setting, make_isolator, make_sensors, shared_robot
+from .physics import simulate
 from .scenes import Scene
 from .time_series import GAIN, STEP, Series, Signal, filtered_half_sine, half_sine
 
@@ -84,7 +84,7 @@ def simulated_series(robot: Robot, scene: Scene, methods: Sequence[Method]) -> S
 
 def inertial_wrenches(q: FloatArray, acceleration: FloatArray) -> FloatArray:
     """What accelerating the bodies behind each sensor takes, at rest `(9, 6)`: (16), (18) by Pinocchio."""
-    model = pinocchio_atlas()
+    model = shared_robot().model
     moved, still = model.createData(), model.createData()
     pin.rnea(model, moved, q, np.zeros(model.nv), acceleration)
     pin.rnea(model, still, q, np.zeros(model.nv), np.zeros(model.nv))

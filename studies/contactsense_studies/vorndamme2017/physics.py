@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
-from importlib import resources
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
-from contactsense.robot import description_file
 from contactsense.sim._arrays import FloatArray
 from contactsense.sim.atlas import SENSOR_LINKS
 
+from .isolation import shared_robot
 from .scenes import Scene
 
 STEP = 1e-3  # [s]
@@ -37,13 +35,6 @@ class Recording:
     force: FloatArray  # (n, 3)
 
 
-@lru_cache(maxsize=1)
-def pinocchio_atlas() -> Any:
-    """The packaged Atlas as a `pinocchio.Model` with a free base."""
-    with resources.as_file(description_file("atlas")) as path:
-        return pin.buildModelFromUrdf(str(path), pin.JointModelFreeFlyer())
-
-
 def simulate(
     scene: Scene,
     pulse: Callable[[float], float],
@@ -56,7 +47,7 @@ def simulate(
 
     `speed` [rad/s]: of every joint at the start, in alternating directions.
     """
-    model = pinocchio_atlas()
+    model = shared_robot().model
     data = model.createData()
     touch = scene.touches[0]
     joint = model.frames[model.getBodyId(touch.link)].parentJoint

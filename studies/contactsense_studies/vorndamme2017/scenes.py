@@ -15,7 +15,6 @@ from contactsense.sim.sampling import (
     CONE,
     FORCES,
     Touch,
-    integrate,
     lines,
     random_configuration,
     touches_in_pose,
@@ -72,10 +71,7 @@ def standing_pose(robot: Robot) -> FloatArray:
         side, _, rest = name.partition("_")
         if side == "l":
             angles[f"r_{rest}"] = angle * MIRRORED[rest.rpartition("_")[2]]
-    joints = robot.joint_names[int(robot.floating_base) :]
-    base = np.zeros(6 if robot.floating_base else 0)
-    step = np.array([angles.get(name, 0.0) for name in joints])
-    return integrate(robot, robot.neutral(), np.concatenate([base, step]))
+    return robot.configuration({name: angle for name, angle in angles.items() if name in robot.joint_names})
 
 
 def singles(

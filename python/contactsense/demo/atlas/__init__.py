@@ -1,1 +1,0 @@
-"""The demo's humanoid: it stands on the ground and is pushed."""
