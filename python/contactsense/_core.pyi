@@ -33,8 +33,8 @@ __all__ = [
     "Surface",
     "SurfaceSamples",
     "__version__",
-    "_restore",
     "_checked_urdf",
+    "_restore",
     "_robot_from_urdf",
     "build_profile",
 ]
