@@ -4,15 +4,15 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test lint types rust-test python-test shared-test bench clean toolchain install studies
+.PHONY: demo test lint types rust-test python-test shared-test bench clean toolchain install studies wheel-check
 
-demo: EXTRAS := demo
+demo: GROUP :=
 demo: install
 	$(BIN)/contactsense demo
 
 test: lint types rust-test python-test
 
-# What `contactsense study` runs; tests and benches have its dependencies in their extras.
+# What `contactsense study` runs; the groups of tests and benches have its dependencies.
 studies: install
 	$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps -e studies
 
@@ -42,7 +42,7 @@ python-test: studies
 shared-test: studies
 	$(BIN)/python -m pytest -q --durations=10 -m shared
 
-bench: EXTRAS := bench
+bench: GROUP := bench
 bench: install
 	cargo bench --workspace
 	$(BIN)/python -m benches.compare
@@ -57,10 +57,22 @@ $(BIN)/maturin: | toolchain
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install -q --disable-pip-version-check 'maturin>=1.9.4,<2'
 
-# Installs what is needed, builds the release code, and links it into the environment.
-EXTRAS := test
+# Installs what is needed, builds the release code, and links it into the environment. Dependency groups need pip 25.1.
+# The extras are those that `demo` names: maturin would look for `contactsense[...]` itself in the package index.
+EXTRAS := cli,sim,plot
+GROUP := test
 install: $(BIN)/maturin
 	VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet --extras $(EXTRAS)
+	@[ -z "$(GROUP)" ] || $(BIN)/python -m pip install -q --disable-pip-version-check 'pip>=25.1'
+	@[ -z "$(GROUP)" ] || $(BIN)/python -m pip install -q --disable-pip-version-check --group $(GROUP)
+
+# The wheel, in an environment that holds nothing else: it works, and says what each missing extra is for.
+wheel-check: $(BIN)/maturin
+	rm -rf target/wheel-check
+	$(BIN)/maturin build --release --quiet --out target/wheel-check
+	$(PYTHON) -m venv target/wheel-check/venv
+	target/wheel-check/venv/bin/python -m pip install -q --disable-pip-version-check target/wheel-check/*.whl
+	target/wheel-check/venv/bin/python -I tools/check_wheel.py
 
 clean:
 	rm -rf $(VENV) target

@@ -35,7 +35,7 @@ def run(*arguments: str) -> subprocess.CompletedProcess[str]:
 def report() -> dict:
     absent = [name for name in PEERS if importlib.util.find_spec(name) is None]
     if absent:
-        pytest.skip(f"{', '.join(absent)} not installed (extra `bench`)")
+        pytest.skip(f"{', '.join(absent)} not installed (dependency group `bench`)")
     if cs.build_profile != "release":
         pytest.skip("a debug build is not timed")
     done = run("--quick", "--json")
@@ -73,7 +73,7 @@ def test_report_names_the_machine_and_versions(report: dict) -> None:
 
 @pytest.mark.parametrize("name", ["observer", "compensation"])
 def test_comparisons_without_the_extra_run(name: str) -> None:
-    """What the other tests skip without the extra `bench` runs here as far as it needs nothing of it."""
+    """What the other tests skip without the dependency group `bench` runs here as far as it needs nothing of it."""
     if name == "compensation":
         pytest.importorskip("idyntree", reason="idyntree has wheels for Linux only")
     code = (
