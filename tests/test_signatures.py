@@ -48,6 +48,16 @@ SIGNATURES = {
     "ContactReport.to_dict": "",
     "ContactEstimate.to_dict": "",
     "Mode.to_dict": "",
+    "Robot.from_urdf": "path, *, package_dirs=(), floating_base=False, locked_joints=None, "
+    "geometry='collision', gravity=(0.0, 0.0, -9.81), armature=None, missing_meshes='error'",
+    "Robot.from_pinocchio": "model, geometry_model",
+    "Robot.named": "name",
+    "Robot.with_payload": "link, mass, com, inertia=None",
+    "Robot.configuration": "positions, *, base=None",
+    "Robot.velocity": "velocities, *, base=None",
+    "Robot.torque": "torques",
+    "Robot.integrate": "q, v",
+    "Robot.random_configuration": "seed",
     "Robot.neutral": "",
     "Robot.mass_matrix": "q",
     "Robot.inverse_dynamics": "q, v, a",
@@ -56,6 +66,10 @@ SIGNATURES = {
     "Robot.jacobian": "q, link, point=None",
     "Robot.surface": "link",
 }
+
+
+# Written in Python, so the stub does not have them.
+IN_PYTHON = {"Robot.from_urdf", "Robot.from_pinocchio", "Robot.named", "Robot.with_payload"}
 
 
 def arguments(text):
@@ -103,12 +117,15 @@ def in_stub():
 def test_signatures_are_the_promised_ones(name):
     promised = arguments(SIGNATURES[name])
     assert at_run_time(name) == promised
-    assert in_stub()[name] == promised
+    if name not in IN_PYTHON:
+        assert in_stub()[name] == promised
 
 
 def test_every_public_method_is_in_the_table():
-    public = {name for name in in_stub() if not name.startswith("Robot") and name.split(".")[0] in cs.__all__}
-    assert public == {name for name in SIGNATURES if not name.startswith("Robot")}
+    public = {name for name in in_stub() if name != "Robot" and name.split(".")[0] in cs.__all__}
+    # Constructors of columns are for pickles.
+    public -= {"ClosestPoints", "RayHits", "SurfaceSamples", "Particles"}
+    assert public | IN_PYTHON == set(SIGNATURES)
 
 
 def test_the_defaults_are_those_in_use():

@@ -1,6 +1,6 @@
 """What a bare `pip install contactsense` gives: the library works, and a missing extra is named.
 
-To be run by the Python of an environment that holds the wheel and its dependencies alone (`make wheel-check`).
+Run by the Python of an environment with nothing but the wheel and its dependencies: `make wheel-check`.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def check_environment() -> None:
     licences = {Path(file).name for file in about.get_all("License-File") or ()}
     assert licences == {"LICENSE-MIT", "LICENSE-APACHE"}, licences
     offered = set(about.get_all("Provides-Extra") or ())
-    assert offered == {*EXTRAS, "demo"}, offered
+    assert offered == {*EXTRAS, "demo", "study"}, offered
 
 
 def check_library() -> None:
@@ -67,12 +67,13 @@ def check_missing_extras() -> None:
         try:
             attempt()
         except cs.ContactSenseError as missing:
-            assert f"pip install 'contactsense[{extra}]'" in str(missing), missing
+            assert f"pip install 'contactsense[{extra}]'" in str(missing), missing  # noqa: PT017
         else:
             raise AssertionError(f"extra {extra}: nothing is missing")
 
 
 def main() -> None:
+    """Runs all checks."""
     for check in (check_environment, check_library, check_command, check_missing_extras):
         check()
         print(f"{check.__name__}: passed")

@@ -30,7 +30,7 @@ pub fn used_options<'py>(py: Python<'py>, options: &FilterOptions) -> PyResult<B
         dict.set_item("torque_noise", values(py, &options.torque_noise)?)?;
         dict.set_item("relative_noise", options.relative_noise)?;
     }
-    let threshold = options.torque_threshold.as_ref().map(|threshold| values(py, threshold)).transpose()?;
+    let threshold = options.stated_threshold().map(|threshold| values(py, &threshold)).transpose()?;
     dict.set_item("torque_threshold", threshold)?;
     Ok(dict)
 }

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use super::schedule::Schedule;
 use crate::error::{Error, Result};
 use crate::robot::{Robot, LARGEST, WORLD};
-use crate::torque::{ForceModel, NoiseModel, TorqueNoise};
+use crate::torque::{ForceModel, NoiseModel, TorqueNoise, LEVEL};
 
 /// How a contact moves with the robot.
 ///
@@ -194,13 +194,23 @@ impl FilterOptions {
         }
     }
 
+    /// The torque threshold, as given or by default, one for all or one a joint (Nm); none where it follows from `noise`.
+    pub fn stated_threshold(&self) -> Option<Vec<f64>> {
+        match (&self.torque_threshold, &self.noise) {
+            (Some(given), _) => Some(given.clone()),
+            (None, Some(_)) => None,
+            (None, None) => {
+                Some(self.torque_noise.iter().map(|noise| (LEVEL * noise).max(LEAST_THRESHOLD)).collect())
+            }
+        }
+    }
+
     /// Below these torques on every joint there is no contact.
     pub(super) fn threshold(&self, robot: &Robot, noise: &TorqueNoise) -> Result<Vec<f64>> {
-        let Some(given) = &self.torque_threshold else {
-            let least = if self.noise.is_none() { LEAST_THRESHOLD } else { 0.0 };
-            return Ok(noise.threshold().into_iter().map(|threshold| threshold.max(least)).collect());
-        };
-        Self::per_joint(robot, "torque_threshold", given)
+        match self.stated_threshold() {
+            Some(threshold) => Self::per_joint(robot, "torque_threshold", &threshold),
+            None => Ok(noise.threshold()),
+        }
     }
 
     /// One positive number a velocity variable.
