@@ -72,8 +72,8 @@ def test_report_names_the_machine_and_versions(report: dict) -> None:
 
 
 @pytest.mark.parametrize("name", ["observer", "compensation"])
-def test_comparisons_without_the_extra_run(name: str) -> None:
-    """What needs nothing of the dependency group `bench` runs without it."""
+def test_comparisons_without_the_peers_run(name: str) -> None:
+    """What the other tests skip without the group `bench` runs here as far as it needs nothing of it."""
     if name == "compensation":
         pytest.importorskip("idyntree", reason="idyntree has wheels for Linux only")
     code = (

@@ -86,6 +86,15 @@ def read_log(path: Path) -> TouchLog:
     Raises:
         InputError: names the file and column.
     """
+    return log_of_table(path.name.partition(".")[0], read_columns(path), str(path))
+
+
+def read_columns(path: Path) -> FloatArray:
+    """The rows of a CSV file, ordered as `COLUMNS`; the file may have more columns, in any order.
+
+    Raises:
+        InputError: names the file and column.
+    """
     try:
         with gzip.open(path, "rt") if path.suffix == ".gz" else path.open() as file:
             header = [name.strip() for name in file.readline().split(",")]
@@ -96,12 +105,11 @@ def read_log(path: Path) -> TouchLog:
             lines = file.readlines()
             used = [header.index(name) for name in COLUMNS]
             # No lines would be a warning of NumPy's.
-            table = np.loadtxt(lines, delimiter=",", ndmin=2, usecols=used) if lines else np.empty((0, 0))
+            return np.loadtxt(lines, delimiter=",", ndmin=2, usecols=used) if lines else np.empty((0, 0))
     except InputError:
         raise
     except (OSError, EOFError, ValueError) as cause:
         raise InputError(f"data: '{path}' cannot be read as a table of numbers: {cause}") from cause
-    return log_of_table(path.name.partition(".")[0], table, str(path))
 
 
 def log_of_table(name: str, table: FloatArray, origin: str) -> TouchLog:

@@ -65,10 +65,6 @@ pub(super) fn visits(robot: &Robot, floating_base: bool) -> Result<Vec<Visit>> {
             return Err(Error::model(format!("{owner} {text}")).of(&owner));
         }
     }
-    let count = moving(robot).count();
-    if count > MOST_JOINTS {
-        return Err(Error::model(format!("{count} joints move; supported: up to {MOST_JOINTS}")));
-    }
     let mut visits: Vec<Visit> = Vec::with_capacity(robot.links.len());
     let mut ahead: Vec<(Visit, usize)> =
         roots.iter().map(|&link| (Visit { link, joint: None, parent: 0 }, 0)).collect();
@@ -94,6 +90,10 @@ pub(super) fn visits(robot: &Robot, floating_base: bool) -> Result<Vec<Visit>> {
             "the links must form a tree; these form a cycle: {}",
             list(&cycle)
         )));
+    }
+    let count = moving(robot).count();
+    if count > MOST_JOINTS {
+        return Err(Error::model(format!("{count} joints move; supported: up to {MOST_JOINTS}")));
     }
     Ok(visits)
 }
