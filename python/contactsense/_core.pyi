@@ -127,8 +127,9 @@ class Robot:
         """
     @property
     def effort_limits(self) -> NDArray[np.float64]:
-        """Largest effort of each velocity variable, `(nv,)` [Nm or N]; infinite where there is no limit, zero for a
-        floating base, which no actuator moves.
+        """Largest effort of each velocity variable, `(nv,)` [Nm, N].
+
+        It is infinite where there is no limit, and zero for a floating base, which no actuator moves.
         """
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -26,7 +26,7 @@ use std::sync::Arc;
 /// match Robot::new(description) {
 ///     Err(Error::Model { element, problem, .. }) => {
 ///         assert_eq!(element.as_deref(), Some("joint 'joint_3'"));
-///         assert_eq!(problem, "joint 'joint_3': mass and armature must not be negative");
+///         assert_eq!(problem, "joint 'joint_3': mass must not be negative, not -1 kg");
 ///     }
 ///     other => panic!("{other:?}"),
 /// }

@@ -117,8 +117,9 @@ impl PyRobot {
         Ok(read_only(PyArray1::from_slice(py, limits.as_flattened()).reshape([limits.len(), 2])?))
     }
 
-    /// Largest effort of each velocity variable, `(nv,)` [Nm or N]; infinite where there is no limit, zero for a
-    /// floating base, which no actuator moves.
+    /// Largest effort of each velocity variable, `(nv,)` [Nm, N].
+    ///
+    /// It is infinite where there is no limit, and zero for a floating base, which no actuator moves.
     #[getter]
     fn effort_limits<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         read_only(PyArray1::from_vec(py, self.0.effort_limits()))
