@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 
 mod arguments;
 mod arrays;
+mod by_name;
 mod columns;
 mod compensator;
 mod contact;

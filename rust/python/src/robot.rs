@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use contactsense::robot::{LinkIndex, Robot};
-use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyMapping, PyTuple};
+use pyo3::types::PyTuple;
 
 use crate::arguments::{number, text, whole};
 use crate::arrays::Vector;
-use crate::description::{description as read_description, placement, square};
+use crate::by_name::{base_pose, by_name, pairs};
+use crate::description::{description as read_description, square};
 use crate::errors::{detached, input, to_python};
 use crate::returned::{matrix, pose, read_only};
 use crate::surface::PySurface;
@@ -425,33 +426,4 @@ impl PyRobot {
             }
         )
     }
-}
-
-/// `{name: value}`.
-fn by_name(argument: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<(String, f64)>> {
-    let wrong = || input(object.py(), format!("{argument}: expected {{joint name: number}}"));
-    let mapping = object.cast::<PyMapping>().map_err(|_| wrong())?;
-    mapping.items()?.iter().map(|item| item.extract::<(String, f64)>().map_err(|_| wrong())).collect()
-}
-
-fn pairs(values: &[(String, f64)]) -> Vec<(&str, f64)> {
-    values.iter().map(|(name, value)| (name.as_str(), *value)).collect()
-}
-
-/// Position and quaternion xyzw, from these or a homogeneous matrix.
-fn base_pose(object: &Bound<'_, PyAny>) -> PyResult<[f64; 7]> {
-    if let Ok(vector) = Vector::new("base", object) {
-        return vector.fixed::<7>(object.py(), "base");
-    }
-    let pose = placement("base", object)?;
-    let rotation = Rotation3::from_matrix_unchecked(pose.rotation);
-    let off = (pose.rotation.tr_mul(&pose.rotation) - Matrix3::identity()).amax();
-    if off > 1e-6 {
-        let text =
-            "base: the matrix must be a pose, its rotation orthonormal; else give (x, y, z, qx, qy, qz, qw)";
-        return Err(input(object.py(), text.into()));
-    }
-    let turn = UnitQuaternion::from_rotation_matrix(&rotation);
-    let ([x, y, z], [i, j, k, w]) = (pose.translation.into(), turn.coords.into());
-    Ok([x, y, z, i, j, k, w])
 }
