@@ -5,13 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from robots import BY_NAME
+from tools.figures.noisy_isolation import SIGMA, count, seeded
 
 import contactsense as cs
 from contactsense.sim.sampling import lines, random_configuration, touches
 
-SIGMA = 0.1  # of every torque, a third of the threshold [Nm]
-PUSHES = 300
-FORCE = (10.0, 60.0)  # [N]
 ROBOTS = ("iiwa14", "panda", "xarm7", "talos", "g1")
 
 
@@ -25,54 +23,15 @@ def push_torque(
     return robot.jacobian(q, link, point)[:3].T @ force
 
 
-def is_covered(robot: cs.Robot, q: np.ndarray, link: str, point: np.ndarray, inward: np.ndarray) -> bool:
-    """Whether the point lies inside another link, or nothing thicker than 5 mm could push there."""
-    for other in robot.link_names:
-        if other == link:
-            continue
-        pose = robot.link_pose(q, other)
-        local = (point - pose[:3, 3]) @ pose[:3, :3]
-        distances = robot.surface(other).cast_rays([local], [-inward @ pose[:3, :3]]).distance
-        if len(distances) % 2 == 1 or (len(distances) and distances.min() < 0.005):
-            return True
-    return False
-
-
 # The nested, open meshes of Talos' wrists do not tell what is inside another link.
 @pytest.mark.parametrize(
     ("name", "free"), [(name, free) for name in ROBOTS for free in (True, False) if free or name != "talos"]
 )
 def test_located_points_are_within_their_uncertainty(name: str, free: bool) -> None:
     """Pushes along free lines, and along lines that other parts of the robot bar, which are harder."""
-    robot = robot_named(name)
-    isolator = cs.ContactIsolator(robot, torque_threshold=3 * SIGMA)
-    rng = np.random.default_rng([len(name), free, 77])
-    moving = [link for link in robot.link_names if robot.jacobian(robot.neutral(), link).any()]
-    located = wrong = pushes = 0
-    while pushes < PUSHES:
-        q, link = random_configuration(robot, rng), str(rng.choice(moving))
-        if free:
-            points, inward = lines(robot, q, link, 3, rng)
-            if not len(points):
-                continue
-            point, force = points[0], inward[0] * rng.uniform(*FORCE)
-        else:
-            sample = robot.surface(link).sample(1, seed=int(rng.integers(2**32)))
-            pose = robot.link_pose(q, link)
-            point = pose[:3, :3] @ sample.points[0] + pose[:3, 3]
-            normal = pose[:3, :3] @ sample.normals[0]
-            if is_covered(robot, q, link, point, -normal):
-                continue
-            force = -normal * rng.uniform(*FORCE)
-        pushes += 1
-        tau = push_torque(robot, q, link, point, force) + SIGMA * rng.standard_normal(robot.nv)
-        for contact in isolator.isolate(q, tau).contacts:
-            if contact.located:
-                located += 1
-                off = np.linalg.norm(contact.point - point)
-                wrong += off > 0.01 + 3 * contact.point_std
-    assert wrong <= 0.01 * located + 1  # of few, one is more than one per cent
-    assert located >= 0.02 * pushes
+    found = count(robot_named(name), seeded(name, free), free)
+    assert found["wrong"] <= 0.01 * found["located"] + 1  # of few, one is more than one per cent
+    assert found["located"] >= 0.02 * found["pushes"]
 
 
 def test_a_link_hidden_by_a_silent_joint_is_a_candidate() -> None:

@@ -1,68 +1,75 @@
-"""docs/figures.json: what was run, when, on which machine, and the text that it gave."""
+"""docs/figures.json: the results, and what they were measured with."""
 
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
+from datetime import datetime, timezone
+from importlib import metadata
+from pathlib import Path
 from typing import Any
 
-from .catalogue import BY_NAME, FIGURES, Figure
-from .pages import ROOT, pages, places
+from benches.compare.machine import describe
 
-RECORD = ROOT / "docs" / "figures.json"
-Entry = dict[str, Any]
-
-
-def read() -> dict[str, Entry]:
-    """All entries by name."""
-    entries: dict[str, Entry] = json.loads(RECORD.read_text(encoding="utf-8")) if RECORD.exists() else {}
-    return entries
+ROOT = Path(__file__).resolve().parents[2]
+FILE = ROOT / "docs" / "figures.json"
+# Beside those that benches name: simulated figures depend on the simulator.
+PACKAGES = ("mujoco", "example-robot-data")
 
 
-def write(entries: dict[str, Entry]) -> None:
-    """Writes all entries, in the order of the catalogue."""
-    ordered = {figure.name: entries[figure.name] for figure in FIGURES if figure.name in entries}
-    RECORD.write_text(json.dumps(ordered, indent=1) + "\n", encoding="utf-8")
+def load() -> dict[str, Any]:
+    """All records by name."""
+    return json.loads(FILE.read_text(encoding="utf-8")) if FILE.exists() else {}
 
 
-def entry(figure: Figure, text: str, recorded: Entry, runs: list[Entry]) -> Entry:
-    """One entry."""
+def save(records: dict[str, Any]) -> None:
+    """Writes all records, ordered by name."""
+    text = json.dumps(dict(sorted(records.items())), indent=1, ensure_ascii=False, allow_nan=False)
+    FILE.write_text(text + "\n", encoding="utf-8")
+
+
+def measured() -> dict[str, Any]:
+    """Date, commit, processor and versions, of now."""
+    versions = {package: metadata.version(package) for package in PACKAGES}
+    about = {key: value for key, value in {**describe(), **versions}.items() if value != "absent"}
+    code = ("rust/core/src", "rust/python/src", "python")
+    changed = bool(git("status", "--porcelain", "--", *code))
     return {
-        "page": figure.page,
-        "commands": [f"python {command}" for command in figure.commands],
-        "seeds": list(figure.seeds),
-        "aggregation": figure.aggregation,
-        "recorded": recorded,
-        "text": text,
-        "runs": runs,
+        "date": datetime.now(timezone.utc).date().isoformat(),
+        # The last that changed the library.
+        "commit": git("log", "-1", "--format=%h", "--", *code) + (" and changes" if changed else ""),
+        "about": about,
     }
 
 
-def faults() -> list[str]:
-    """What does not agree between catalogue, record and pages."""
-    entries = read()
-    found = []
-    in_pages = {
-        (str(page.relative_to(ROOT)), name): text for page in pages() for name, text in places(page).items()
-    }
-    for page, name in in_pages:
-        if name not in BY_NAME or BY_NAME[name].page != page:
-            found.append(f"{page}: the figure '{name}' is not in tools/figures/catalogue.py")
-    for figure in FIGURES:
-        text = in_pages.get((figure.page, figure.name))
-        if text is None:
-            found.append(f"{figure.page}: there is no place for the figure '{figure.name}'")
-        elif figure.name not in entries:
-            found.append(f"docs/figures.json: no entry '{figure.name}'")
-        else:
-            recorded = entries[figure.name]
-            expected = entry(figure, text, recorded["recorded"], recorded["runs"])
-            found += [
-                f"{figure.page}, figure '{figure.name}': {key} differs from docs/figures.json"
-                for key, value in expected.items()
-                if recorded.get(key) != value
-            ]
-            if figure.text is not None and recorded["runs"] and figure.text(recorded["runs"]) != text:
-                found.append(
-                    f"{figure.page}, figure '{figure.name}': the text does not follow from the recorded runs"
-                )
-    return found
+def introduced(text: str, page: str) -> dict[str, str]:
+    """The commit that put `text` into a page, and its date."""
+    found = git("log", "-1", f"-S{text}", "--format=%h %ad", "--date=short", "--", page)
+    if not found:
+        raise SystemExit(f"no commit puts this into {page}: {text}")
+    commit, date = found.split()
+    return {"commit": commit, "date": date}
+
+
+def git(*arguments: str) -> str:
+    """What git prints."""
+    return subprocess.run(
+        ["git", *arguments], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout.strip()
+
+
+def run(command: list[str], folder: Path) -> Any:
+    """The JSON that a command prints, run in a folder of its own; `python` is this one."""
+    done = subprocess.run(
+        [sys.executable, *command[1:]],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},  # `tools` and `benches` are not installed
+        stdout=subprocess.PIPE,
+        text=True,
+        check=False,
+    )
+    if done.returncode:
+        raise SystemExit(f"exit code {done.returncode}: {' '.join(command)}")
+    return json.loads(done.stdout)
