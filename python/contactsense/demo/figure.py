@@ -48,7 +48,7 @@ class _Layout:
 
 _ARM = _Layout(
     size=(12.0, 12.6),
-    title="An arm in fast motion feels where it is hit",
+    title="Contacts of an arm in fast motion, from joint torques",
     whole_title="The whole run",
     window=(-15.0, 95.0),
     force_top=110.0,
@@ -60,7 +60,7 @@ _ARM = _Layout(
 )
 _HUMANOID = _Layout(
     size=(15.0, 12.0),
-    title="A standing humanoid feels where it is pushed",
+    title="Contacts of a standing humanoid, from its own measurements",
     whole_title="The whole run: the ground on the feet, and the pushes",
     window=(-40.0, 360.0),
     force_top=130.0,
@@ -132,7 +132,7 @@ def _moving(result: DemoResult) -> str:
     return (
         f"{result.robot_name} in simulation, joints at up to {result.planned_speed:.1f} rad/s, {kind}, seed "
         f"{result.seed}. Only joint positions, velocities and torques are used.\n"
-        f"{result.detected} of {len(result.hits)} hits detected, {result.links_right} links named right, "
+        f"{result.detected} of {len(result.hits)} contacts detected, {result.links_right} links correct, "
         f"{len(result.located)} points located."
     )
 
@@ -145,7 +145,7 @@ def _standing(result: DemoResult, standing: Standing) -> str:
         f"{noise.percent:g} % + {noise.newton_metres:g} Nm, noise of its nine force/torque sensors "
         f"{sensors.newtons:g} N, {sensors.newton_metres:g} Nm. The ground's forces on the feet are wanted "
         f"contacts.\n{kept}: the pelvis moves by {1e3 * standing.moved:.0f} mm at most. {result.detected} of "
-        f"{len(result.hits)} pushes detected, {result.links_right} links named right, "
+        f"{len(result.hits)} contacts detected, {result.links_right} links correct, "
         f"{len(result.located)} points located, {result.false_alarms} false alarms."
     )
 
@@ -193,7 +193,7 @@ def _bands(axes: Axes, time: NDArray[np.float64], signals: Signals) -> None:
     axes.fill_between(time, 1.1, 1.9, where=hit, color=TRUTH, alpha=0.5, lw=0)
     axes.fill_between(time, 0.1, 0.9, where=signals.collision.tolist(), color=DETECTED, lw=0)
     axes.set_ylim(0.0, 2.0)
-    axes.set_yticks((0.5, 1.5), ("detected", "true hit"), fontsize=9)
+    axes.set_yticks((0.5, 1.5), ("detected", "true contact"), fontsize=9)
     axes.tick_params(axis="y", length=0)
     axes.spines["left"].set_visible(False)
 
@@ -207,7 +207,7 @@ def _finish(axes: list[Axes], hit: HitResult, layout: _Layout, *, leftmost: bool
     if hit.delay is not None:
         place: Any = {"ha": "right", "va": "top", "transform": axes[-2].transAxes}
         axes[-2].text(0.97, 0.97, f"detected after {1e3 * hit.delay:.0f} ms", color=TEXT, **place)
-    axes[-1].set_xlabel("time since the hit began [ms]")
+    axes[-1].set_xlabel("time since the contact began [ms]")
     if leftmost:
         axes[-2].set_ylabel("force [N]")
         if layout.torques:
@@ -258,4 +258,4 @@ def _estimate(hit: HitResult) -> str:
         return "not detected"
     if hit.point_error is not None:
         return f"{1e3 * hit.point_error:.1f} mm off"
-    return "named" if hit.link_right else f"named {_short(hit.named)}"
+    return "link only" if hit.link_right else f"named {_short(hit.named)}"

@@ -23,8 +23,8 @@ _LENGTH = 0.0045  # of a force [m/N]
 ROBOT_LEGEND = (
     Line2D([], [], color=TRUTH, lw=2.0, marker="o", ms=5, label="true force and point"),
     Line2D([], [], color=ESTIMATE, lw=4.5, marker="o", ms=11, label="estimated"),
-    Patch(color=NAMED, label="link named, right"),
-    Patch(color=WRONG, label="link named, wrong"),
+    Patch(color=NAMED, label="estimated link, correct"),
+    Patch(color=WRONG, label="estimated link, wrong"),
 )
 
 
@@ -41,7 +41,7 @@ def draw_robot(axes: Any, robot: Robot, hit: HitResult) -> None:
     axes.set_axis_off()
     title = {"transform": axes.transAxes, "ha": "center"}
     axes.text(
-        0.5, 1.15, f"Hit {hit.number}: {hit.link}, {hit.force:.0f} N", weight="bold", fontsize=12, **title
+        0.5, 1.15, f"Contact {hit.number}: {hit.link}, {hit.force:.0f} N", weight="bold", fontsize=12, **title
     )
     axes.text(0.5, 1.13, "\n".join(_outcome(hit)), color=TEXT, va="top", **title)
 
@@ -49,7 +49,7 @@ def draw_robot(axes: Any, robot: Robot, hit: HitResult) -> None:
 def _outcome(hit: HitResult) -> tuple[str, ...]:
     if hit.named is None:
         return ("not detected",)
-    name = "link named" if hit.link_right else f"named {hit.named}"
+    name = "link correct" if hit.link_right else f"named {hit.named}"
     if hit.point_error is None or hit.force_error is None:
         return name, "point not determined"
     return name, f"point {1e3 * hit.point_error:.1f} mm off, force {100 * hit.force_error:.1f} % off"
