@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Self, disjoint_base
 
 __all__ = [
+    "_LINK_PREFIX",
     "Candidate",
     "ClosestPoints",
     "Contact",
@@ -40,6 +41,7 @@ __all__ = [
 ]
 
 __version__: Final[str]
+_LINK_PREFIX: Final[str]
 build_profile: Final[Literal["debug", "release"]]
 
 class ContactSenseError(Exception):

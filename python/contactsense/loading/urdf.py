@@ -19,8 +19,6 @@ from .description import FloatArray, JointTuple, RobotDescription, Shape, name_l
 from .pinocchio_links import is_body
 from .pinocchio_model import joints_of
 
-# In the text for Pinocchio, before the names of links: it cannot lock a joint that is called as a link is.
-_LINK = "link:"
 # `buildReducedModel` makes a `pinocchio.Data`, whose memory grows with the cube of the joints: half a GB
 # for 200.
 _MOST_JOINTS = 200
@@ -74,9 +72,9 @@ def load_urdf(
         warnings.append(f"These joints are locked outside their limits: {name_list(outside)}")
     for renamed in (full, model) if locked else (model,):
         for frame in filter(is_body, renamed.frames):
-            frame.name = frame.name.removeprefix(_LINK)
+            frame.name = frame.name.removeprefix(_core._LINK_PREFIX)
     for item in objects.geometryObjects:
-        item.name = item.name.removeprefix(_LINK)
+        item.name = item.name.removeprefix(_core._LINK_PREFIX)
     standing_for = {f"{link}_{place}": shape for link, place, shape in shapes}
     description = describe_pinocchio(model, objects, standing_for, full if locked else None)
     return Loaded(
@@ -87,12 +85,11 @@ def load_urdf(
 def _path(argument: str, path: Any) -> Path:
     try:
         found = Path(path)
-        os.fsencode(found).index(b"\0")
-    except ValueError:  # there is no zero byte
-        return found
     except TypeError as cause:
         raise InputError(f"{argument}: must be a path, not {path!r}") from cause
-    raise InputError(f"{argument}: must be a path without zero bytes, not {path!r}")
+    if "\0" in str(found):
+        raise InputError(f"{argument}: must be a path without zero bytes, not {path!r}")
+    return found
 
 
 def _paths(package_dirs: PackageDirs) -> list[Path]:

@@ -34,6 +34,7 @@ mod urdf;
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("build_profile", if cfg!(debug_assertions) { "debug" } else { "release" })?;
+    module.add("_LINK_PREFIX", contactsense::load::CheckedUrdf::LINK_PREFIX)?;
     errors::register(module)?;
     module.add_function(wrap_pyfunction!(urdf::_checked_urdf, module)?)?;
     module.add_function(wrap_pyfunction!(urdf::_robot_from_urdf, module)?)?;

@@ -13,6 +13,7 @@ pub(crate) mod jacobian;
 pub(crate) mod joint_axis;
 mod kinematics;
 mod link;
+pub(crate) mod lump;
 mod numbers;
 mod payload;
 #[allow(clippy::module_inception)] // the room is called after what is in it

@@ -2,10 +2,15 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::check::principal_moments;
 use super::ids::LinkIndex;
+use super::lump::joined;
 use super::robot::{Body, Robot};
 use crate::error::{Error, Result};
 use crate::spatial::Pose;
+
+/// Share of the largest entry: what computing an inertia in other axes leaves.
+const ROUNDING: f64 = 1e-9;
 
 impl Robot {
     /// The robot with a payload fixed to a link: `mass` (kg), centre of mass `com` in the link's frame (m), `inertia`
@@ -38,10 +43,13 @@ impl Robot {
         if !com.iter().all(|x| x.is_finite()) {
             return Err(Error::input("com", "must be 3 finite numbers [m]"));
         }
-        let moments = inertia.symmetric_eigenvalues();
-        let largest = inertia.amax();
-        let is_symmetric = (inertia - inertia.transpose()).amax() <= 1e-9 * largest;
-        if !largest.is_finite() || !is_symmetric || moments.min() < -1e-9 * largest {
+        let slack = ROUNDING * inertia.amax();
+        let is_symmetric = (inertia - inertia.transpose()).amax() <= slack;
+        let is_finite = inertia.iter().all(|x| x.is_finite());
+        if !(is_finite
+            && is_symmetric
+            && principal_moments(&inertia).is_ok_and(|moments| moments[0] >= -slack))
+        {
             let text = "must be (3, 3), symmetric, with no negative principal moment [kg m^2]";
             return Err(Error::input("inertia", text));
         }
@@ -72,17 +80,21 @@ impl Body {
     }
 }
 
-/// Mass, centre of mass and inertia about it.
-type Inertia = (f64, Vector3<f64>, Matrix3<f64>);
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Two rigid bodies as one, by the parallel axis theorem.
-fn joined(one: Inertia, other: Inertia) -> Inertia {
-    let mass = one.0 + other.0;
-    if mass == 0.0 {
-        return (0.0, one.1, one.2 + other.2);
+    #[test]
+    fn numbers_that_are_none_are_refused_in_bounded_time() {
+        let robot = Robot::example_arm();
+        for number in [f64::NAN, f64::INFINITY] {
+            let refused = robot.with_payload(
+                LinkIndex::new(6),
+                1.0,
+                Vector3::zeros(),
+                Matrix3::from_diagonal_element(number),
+            );
+            assert!(refused.unwrap_err().to_string().contains("inertia"));
+        }
     }
-    let apart = one.1 - other.1;
-    let spread = Matrix3::from_diagonal_element(apart.norm_squared()) - apart * apart.transpose();
-    let com = (one.0 * one.1 + other.0 * other.1) / mass;
-    (mass, com, one.2 + other.2 + spread * (one.0 * other.0 / mass))
 }

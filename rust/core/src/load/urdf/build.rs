@@ -5,6 +5,7 @@ use urdf_rs::{Inertial, JointType};
 
 use super::tree::{Visit, ROOT_JOINT};
 use crate::robot::description::{JointDescription, JointKind, LinkDescription, RobotDescription};
+use crate::robot::lump::joined;
 use crate::robot::{BodyIndex, LinkIndex};
 use crate::spatial::Pose;
 
@@ -152,16 +153,9 @@ fn has_limit(joint: &urdf_rs::Joint) -> bool {
 /// Adds a link's inertia to a body's; `placement` is the link's in the joint's frame.
 fn add(body: &mut JointDescription, placement: &Pose, inertial: &Inertial) {
     let frame = placement.compose(&pose(&inertial.origin));
-    let (mass, com) = (inertial.mass.value, frame.translation);
-    let total = body.mass + mass;
-    // Without mass the centre of mass means nothing; it is then zero, as in Pinocchio.
-    let share = 1.0 / total.max(f64::EPSILON);
-    let apart = body.com - com;
-    let spread = Matrix3::from_diagonal_element(apart.norm_squared()) - apart * apart.transpose();
-    body.inertia += frame.rotation * tensor(inertial) * frame.rotation.transpose();
-    body.inertia += body.mass * mass * share * spread;
-    body.com = (body.mass * body.com + mass * com) * share;
-    body.mass = total;
+    let inertia = frame.rotation * tensor(inertial) * frame.rotation.transpose();
+    (body.mass, body.com, body.inertia) =
+        joined((body.mass, body.com, body.inertia), (inertial.mass.value, frame.translation, inertia));
 }
 
 /// The inertia about the link's centre of mass, in the inertial frame's axes.

@@ -74,8 +74,8 @@ fn is_odd([smallest, middle, largest]: &[f64; 3]) -> bool {
     *smallest < -NO_MOMENT || *largest > (1.0 + TRIANGLE_SLACK) * (smallest + middle) + NO_MOMENT
 }
 
-/// In rising order.
-fn principal_moments(inertia: &Matrix3<f64>) -> Result<[f64; 3]> {
+/// In rising order; bounded work whatever the numbers.
+pub(crate) fn principal_moments(inertia: &Matrix3<f64>) -> Result<[f64; 3]> {
     let found = SymmetricEigen::try_new(*inertia, f64::EPSILON, MOST_STEPS);
     let mut moments: [f64; 3] = found
         .map(|found| found.eigenvalues.into())

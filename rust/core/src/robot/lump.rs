@@ -1,0 +1,18 @@
+//! Rigid bodies that move as one.
+
+use nalgebra::{Matrix3, Vector3};
+
+/// Mass, centre of mass and inertia about it.
+pub(crate) type Inertia = (f64, Vector3<f64>, Matrix3<f64>);
+
+/// Two rigid bodies as one, by the parallel axis theorem; without mass the centre stays where the first's is.
+pub(crate) fn joined(one: Inertia, other: Inertia) -> Inertia {
+    let mass = one.0 + other.0;
+    if mass == 0.0 {
+        return (0.0, one.1, one.2 + other.2);
+    }
+    let apart = one.1 - other.1;
+    let spread = Matrix3::from_diagonal_element(apart.norm_squared()) - apart * apart.transpose();
+    let com = (one.0 * one.1 + other.0 * other.1) / mass;
+    (mass, com, one.2 + other.2 + spread * (one.0 * other.0 / mass))
+}
