@@ -23,6 +23,7 @@ from ._core import (
     build_profile,
 )
 from .errors import ContactSenseError, GeometryError, InputError, ModelError
+from .log import Log
 from .robot import Robot
 
 __all__ = [
@@ -40,6 +41,7 @@ __all__ = [
     "InputError",
     "Isolation",
     "LoadCompensator",
+    "Log",
     "Mode",
     "ModelError",
     "MomentumObserver",
