@@ -8,6 +8,7 @@
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+pub mod calibration;
 mod detection;
 pub mod error;
 pub mod isolation;

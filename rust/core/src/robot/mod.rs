@@ -8,6 +8,8 @@ pub(crate) mod description;
 mod dynamics;
 mod example;
 pub(crate) mod ids;
+#[allow(dead_code)] // until calibration writes them
+pub(crate) mod inertial_parameters;
 mod integrate;
 pub(crate) mod jacobian;
 pub(crate) mod joint_axis;
@@ -22,6 +24,7 @@ mod robot;
 pub(crate) mod test_tree;
 
 pub use description::{JointDescription, JointKind, LinkDescription, RobotDescription};
+pub(crate) use dynamics::MomentumRegressor;
 pub use dynamics::{ForwardDynamics, MomentumPass};
 pub use ids::{BodyIndex, LinkIndex};
 pub use kinematics::{BodyState, Kinematics};

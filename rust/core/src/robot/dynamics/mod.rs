@@ -5,6 +5,8 @@ mod inertia;
 mod inverse;
 mod mass_matrix;
 mod momentum;
+mod regressor;
 
 pub use forward::ForwardDynamics;
 pub use momentum::MomentumPass;
+pub(crate) use regressor::{MomentumRegressor, MOMENTS, PARAMETERS};

@@ -1,0 +1,7 @@
+//! What contact-free motion teaches of one robot: bias, friction, inertias, payload, delays and noise.
+
+mod log;
+#[allow(dead_code)] // until calibration reads them
+pub(crate) mod rows;
+
+pub use log::Log;

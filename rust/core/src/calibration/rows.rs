@@ -1,0 +1,190 @@
+//! The external torque of a log, and what errors of the robot's model would add to it, low-passed alike.
+//!
+//! The observer's output without contact is linear in the errors of the model (algorithm D2): every column here goes through
+//! the same filter, so that no acceleration is needed.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::log::Log;
+use crate::robot::configuration::spread_torque;
+use crate::robot::{Kinematics, MomentumPass, MomentumRegressor, Robot};
+
+/// Terms of each joint's own torque beside the inertial ones.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Term {
+    /// A constant torque.
+    Bias,
+    /// `tanh(v / v_s)`.
+    Coulomb,
+    /// `v`.
+    Viscous,
+    /// `dv/dt`.
+    Armature,
+    /// The measured torque.
+    Torque,
+    /// Its rate.
+    TorqueRate,
+}
+
+/// All terms, in the order of their columns.
+pub(crate) const TERMS: [Term; 6] =
+    [Term::Bias, Term::Coulomb, Term::Viscous, Term::Armature, Term::Torque, Term::TorqueRate];
+
+/// One instant of a log.
+#[derive(Debug, Clone)]
+pub(crate) struct Row {
+    /// Index of the log's row.
+    pub index: usize,
+    /// Measured torque less the torque of the model, `(nv,)` (Nm).
+    pub unexplained: DVector<f64>,
+    /// Torque for one of each inertial parameter, `(nv, 10 bodies)`.
+    pub inertial: DMatrix<f64>,
+    /// Torque for one of each term of a joint itself, `(nv, terms)`.
+    pub terms: DMatrix<f64>,
+}
+
+/// How a log becomes rows.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Filter {
+    /// Of the low-pass, as of an observer (1/s).
+    pub gain: f64,
+    /// Velocity at which Coulomb friction has 76 % of its torque (rad/s; m/s).
+    pub friction_velocity: f64,
+    /// Between rows (s).
+    pub spacing: f64,
+    /// A longer step starts the filters anew (s).
+    pub longest_step: f64,
+}
+
+/// So many time constants after a start the filters have forgotten that they started at zero.
+const SETTLED: f64 = 3.0;
+
+/// The rows of a checked log.
+pub(crate) fn rows(robot: &Robot, log: &Log<'_>, filter: &Filter) -> Vec<Row> {
+    let nv = robot.nv();
+    let mut kinematics = Kinematics::new(robot);
+    let mut pass = MomentumPass::new(robot);
+    let mut regressor = MomentumRegressor::new(robot);
+    let mut now = Instant::new(robot);
+    let mut before = now.clone();
+    let mut state = Filtered::new(robot);
+    let mut rows = vec![];
+    let (mut started, mut last) = (f64::NAN, f64::NEG_INFINITY);
+    let mut tau = vec![0.0; nv];
+    for index in 0..log.len() {
+        let v = log.v_of(robot, index);
+        kinematics.set_configuration(robot, log.q_of(robot, index));
+        kinematics.set_velocity(robot, v);
+        std::mem::swap(&mut now, &mut before);
+        pass.evaluate(robot, &kinematics, v, now.momentum.as_mut_slice(), now.rate.as_mut_slice());
+        regressor.evaluate(robot, &kinematics);
+        now.momentum_columns.copy_from(&regressor.momentum);
+        now.rate_columns.copy_from(&regressor.rate);
+        spread_torque(log.tau_of(index), &mut tau);
+        now.tau.copy_from_slice(&tau);
+        now.v.copy_from_slice(v);
+        let time = log.time[index];
+        let step = if index == 0 { f64::INFINITY } else { time - log.time[index - 1] };
+        if step > filter.longest_step {
+            state.restart();
+            started = time;
+            continue;
+        }
+        state.advance(&before, &now, step, filter);
+        if time - started >= SETTLED / filter.gain && time - last >= filter.spacing {
+            last = time;
+            rows.push(state.row(index));
+        }
+    }
+    rows
+}
+
+/// What is filtered, at one instant.
+#[derive(Clone)]
+struct Instant {
+    momentum: DVector<f64>,
+    rate: DVector<f64>,
+    momentum_columns: DMatrix<f64>,
+    rate_columns: DMatrix<f64>,
+    v: DVector<f64>,
+    tau: DVector<f64>,
+}
+
+impl Instant {
+    fn new(robot: &Robot) -> Self {
+        let vector = DVector::zeros(robot.nv());
+        let columns = MomentumRegressor::new(robot);
+        Instant {
+            momentum: vector.clone(),
+            rate: vector.clone(),
+            momentum_columns: columns.momentum,
+            rate_columns: columns.rate,
+            v: vector.clone(),
+            tau: vector,
+        }
+    }
+}
+
+/// The filters' outputs.
+struct Filtered {
+    model: DVector<f64>,
+    inertial: DMatrix<f64>,
+    terms: DMatrix<f64>,
+}
+
+impl Filtered {
+    fn new(robot: &Robot) -> Self {
+        Filtered {
+            model: DVector::zeros(robot.nv()),
+            inertial: MomentumRegressor::new(robot).momentum,
+            terms: DMatrix::zeros(robot.nv(), TERMS.len()),
+        }
+    }
+
+    fn restart(&mut self) {
+        self.model.fill(0.0);
+        self.inertial.fill(0.0);
+        self.terms.fill(0.0);
+    }
+
+    /// `y' = gain (dp/dt - rate - y)`, exactly over a step on which `dp/dt - rate` is constant, as the observer does.
+    fn advance(&mut self, before: &Instant, now: &Instant, step: f64, filter: &Filter) {
+        let kept = (-filter.gain * step).exp();
+        let new = 1.0 - kept;
+        let (rise, mean) = (new / step, 0.5 * new);
+        self.model *= kept;
+        self.model += (&now.momentum - &before.momentum) * rise - (&now.rate + &before.rate) * mean;
+        let columns = self.inertial.iter_mut();
+        let momenta = now.momentum_columns.iter().zip(&before.momentum_columns);
+        let rates = now.rate_columns.iter().zip(&before.rate_columns);
+        for ((y, (p, p_before)), (r, r_before)) in columns.zip(momenta).zip(rates) {
+            *y = kept * *y + (p - p_before) * rise - (r + r_before) * mean;
+        }
+        for (column, term) in TERMS.iter().enumerate() {
+            for k in 0..now.v.len() {
+                let (v, tau) = ([before.v[k], now.v[k]], [before.tau[k], now.tau[k]]);
+                let sliding = |v: f64| (v / filter.friction_velocity).tanh();
+                let input = match term {
+                    Term::Bias => new,
+                    Term::Coulomb => mean * (sliding(v[0]) + sliding(v[1])),
+                    Term::Viscous => mean * (v[0] + v[1]),
+                    Term::Armature => rise * (v[1] - v[0]),
+                    Term::Torque => mean * (tau[0] + tau[1]),
+                    Term::TorqueRate => rise * (tau[1] - tau[0]),
+                };
+                let y = &mut self.terms[(k, column)];
+                *y = kept * *y + input;
+            }
+        }
+    }
+
+    fn row(&self, index: usize) -> Row {
+        let torque = TERMS.iter().position(|term| *term == Term::Torque).unwrap_or(0);
+        Row {
+            index,
+            unexplained: self.terms.column(torque) - &self.model,
+            inertial: self.inertial.clone(),
+            terms: self.terms.clone(),
+        }
+    }
+}
