@@ -15,8 +15,11 @@ def test_columns_are_read_only_copies() -> None:
     tau = ROWS.copy()
     log = cs.Log(TIME, ROWS, ROWS, tau, wrenches=np.zeros((4, 2, 6)))
     tau[0, 0] = 5.0
-    assert log.tau is not None and log.tau[0, 0] == 0.0 and not log.tau.flags.writeable
-    assert len(log) == 4 and log.external_torque is None
+    assert log.tau is not None
+    assert log.tau[0, 0] == 0.0
+    assert not log.tau.flags.writeable
+    assert len(log) == 4
+    assert log.external_torque is None
     assert repr(log) == "Log(4 rows, 0.030 s: time, q, v, tau, wrenches)"
 
 

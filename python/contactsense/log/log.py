@@ -17,8 +17,8 @@ class Log:
 
     Args:
         time: `(n,)`, strictly increasing [s].
-        q: `(n, nq)`, positions.
-        v: `(n, nv)`, velocities.
+        q: `(n, nq)`, positions [rad; m for sliding joints].
+        v: `(n, nv)`, velocities [rad/s; m/s for sliding joints].
         tau: `(n, nv)`, or `(n, nv - 6)` for a floating base: torques of the motors [Nm; N for sliding
             joints]; none where only an external torque was recorded.
         wrenches: `(n, sensors, 6)`, readings of force/torque sensors [N, Nm].

@@ -98,7 +98,7 @@ impl PyNoiseModel {
             [value] => format!("{value:?}"),
             _ => format!("{values:?}"),
         };
-        let NoiseModel { torque, velocity, relative, model } = &self.0;
+        let NoiseModel { torque, velocity, relative, model, .. } = &self.0;
         let [torque, velocity, relative, model] = [torque, velocity, relative, model].map(|x| shown(x));
         format!("NoiseModel(torque={torque}, velocity={velocity}, relative={relative}, model={model})")
     }

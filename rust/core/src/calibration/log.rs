@@ -51,7 +51,12 @@ impl<'a> Log<'a> {
             return Err(Error::input("time", format!("must increase [s]; row {} does not", row + 1)));
         }
         for row in 0..n {
-            let at = |error: Error| error.within(&format!("row {row}"));
+            let at = |error: Error| match error {
+                Error::Input { argument, problem } => {
+                    Error::Input { argument, problem: format!("row {row}: {problem}") }
+                }
+                other => other,
+            };
             robot.check_configuration(self.q_of(robot, row)).map_err(at)?;
             robot.check_tangent("v", self.v_of(robot, row)).map_err(at)?;
             robot.check_torque("tau", self.tau_of(row)).map_err(at)?;

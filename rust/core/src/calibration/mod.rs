@@ -1,7 +1,25 @@
 //! What contact-free motion teaches of one robot: bias, friction, inertias, payload, delays and noise.
 
+mod calibrate;
+#[allow(clippy::module_inception)] // the room is called after what it makes
+mod calibration;
+mod contacts;
+mod fingerprint;
+mod folds;
+mod friction;
 mod log;
-#[allow(dead_code)] // until calibration reads them
+mod noise;
+mod normal;
+mod pseudo_inertia;
 pub(crate) mod rows;
+mod solve;
+mod torque_model;
+mod unknowns;
 
+pub use calibrate::calibrate;
+pub use calibration::{BodyInertia, Calibration, CalibrationOptions, Payload};
 pub use log::Log;
+pub use torque_model::{Friction, Reversal};
+
+/// A step from row to row that is so many times the usual one is a gap.
+const LONGEST_STEPS: f64 = 10.0;

@@ -6,29 +6,28 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::log::Log;
+use super::torque_model::Reversal;
 use crate::robot::configuration::spread_torque;
 use crate::robot::{Kinematics, MomentumPass, MomentumRegressor, Robot};
 
 /// Terms of each joint's own torque beside the inertial ones.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Term {
     /// A constant torque.
     Bias,
-    /// `tanh(v / v_s)`.
-    Coulomb,
+    /// Coulomb friction of one newton metre.
+    Coulomb(Reversal),
     /// `v`.
     Viscous,
     /// `dv/dt`.
     Armature,
     /// The measured torque.
+    #[allow(dead_code)] // until diagnosis reads it
     Torque,
     /// Its rate.
+    #[allow(dead_code)] // until diagnosis reads it
     TorqueRate,
 }
-
-/// All terms, in the order of their columns.
-pub(crate) const TERMS: [Term; 6] =
-    [Term::Bias, Term::Coulomb, Term::Viscous, Term::Armature, Term::Torque, Term::TorqueRate];
 
 /// One instant of a log.
 #[derive(Debug, Clone)]
@@ -48,8 +47,6 @@ pub(crate) struct Row {
 pub(crate) struct Filter {
     /// Of the low-pass, as of an observer (1/s).
     pub gain: f64,
-    /// Velocity at which Coulomb friction has 76 % of its torque (rad/s; m/s).
-    pub friction_velocity: f64,
     /// Between rows (s).
     pub spacing: f64,
     /// A longer step starts the filters anew (s).
@@ -60,14 +57,14 @@ pub(crate) struct Filter {
 const SETTLED: f64 = 3.0;
 
 /// The rows of a checked log.
-pub(crate) fn rows(robot: &Robot, log: &Log<'_>, filter: &Filter) -> Vec<Row> {
+pub(crate) fn rows(robot: &Robot, log: &Log<'_>, filter: &Filter, terms: &[Term]) -> Vec<Row> {
     let nv = robot.nv();
     let mut kinematics = Kinematics::new(robot);
     let mut pass = MomentumPass::new(robot);
     let mut regressor = MomentumRegressor::new(robot);
     let mut now = Instant::new(robot);
     let mut before = now.clone();
-    let mut state = Filtered::new(robot);
+    let mut state = Filtered::new(robot, terms);
     let mut rows = vec![];
     let (mut started, mut last) = (f64::NAN, f64::NEG_INFINITY);
     let mut tau = vec![0.0; nv];
@@ -128,23 +125,32 @@ impl Instant {
 /// The filters' outputs.
 struct Filtered {
     model: DVector<f64>,
+    torque: DVector<f64>,
     inertial: DMatrix<f64>,
+    names: Vec<Term>,
+    /// Of Coulomb friction, at the last instant.
+    shares: DMatrix<f64>,
     terms: DMatrix<f64>,
 }
 
 impl Filtered {
-    fn new(robot: &Robot) -> Self {
+    fn new(robot: &Robot, terms: &[Term]) -> Self {
         Filtered {
             model: DVector::zeros(robot.nv()),
+            torque: DVector::zeros(robot.nv()),
             inertial: MomentumRegressor::new(robot).momentum,
-            terms: DMatrix::zeros(robot.nv(), TERMS.len()),
+            names: terms.to_vec(),
+            shares: DMatrix::zeros(robot.nv(), terms.len()),
+            terms: DMatrix::zeros(robot.nv(), terms.len()),
         }
     }
 
     fn restart(&mut self) {
         self.model.fill(0.0);
+        self.torque.fill(0.0);
         self.inertial.fill(0.0);
         self.terms.fill(0.0);
+        self.shares.fill(0.0);
     }
 
     /// `y' = gain (dp/dt - rate - y)`, exactly over a step on which `dp/dt - rate` is constant, as the observer does.
@@ -152,6 +158,8 @@ impl Filtered {
         let kept = (-filter.gain * step).exp();
         let new = 1.0 - kept;
         let (rise, mean) = (new / step, 0.5 * new);
+        self.torque *= kept;
+        self.torque += (&now.tau + &before.tau) * mean;
         self.model *= kept;
         self.model += (&now.momentum - &before.momentum) * rise - (&now.rate + &before.rate) * mean;
         let columns = self.inertial.iter_mut();
@@ -160,13 +168,17 @@ impl Filtered {
         for ((y, (p, p_before)), (r, r_before)) in columns.zip(momenta).zip(rates) {
             *y = kept * *y + (p - p_before) * rise - (r + r_before) * mean;
         }
-        for (column, term) in TERMS.iter().enumerate() {
+        for (column, term) in self.names.iter().enumerate() {
             for k in 0..now.v.len() {
                 let (v, tau) = ([before.v[k], now.v[k]], [before.tau[k], now.tau[k]]);
-                let sliding = |v: f64| (v / filter.friction_velocity).tanh();
                 let input = match term {
                     Term::Bias => new,
-                    Term::Coulomb => mean * (sliding(v[0]) + sliding(v[1])),
+                    Term::Coulomb(reversal) => {
+                        let share = &mut self.shares[(k, column)];
+                        let last = *share;
+                        *share = reversal.share(last, v[1], step);
+                        mean * (last + *share)
+                    }
                     Term::Viscous => mean * (v[0] + v[1]),
                     Term::Armature => rise * (v[1] - v[0]),
                     Term::Torque => mean * (tau[0] + tau[1]),
@@ -179,10 +191,9 @@ impl Filtered {
     }
 
     fn row(&self, index: usize) -> Row {
-        let torque = TERMS.iter().position(|term| *term == Term::Torque).unwrap_or(0);
         Row {
             index,
-            unexplained: self.terms.column(torque) - &self.model,
+            unexplained: &self.torque - &self.model,
             inertial: self.inertial.clone(),
             terms: self.terms.clone(),
         }

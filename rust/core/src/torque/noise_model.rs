@@ -29,11 +29,19 @@ pub struct NoiseModel {
     pub relative: Vec<f64>,
     /// Slow errors left over: bias, friction, masses (Nm; N for sliding joints).
     pub model: Vec<f64>,
+    /// Time over which these change (s).
+    pub model_time: Vec<f64>,
 }
 
 impl Default for NoiseModel {
     fn default() -> Self {
-        NoiseModel { torque: vec![0.05], velocity: vec![0.0], relative: vec![0.03], model: vec![0.1] }
+        NoiseModel {
+            torque: vec![0.05],
+            velocity: vec![0.0],
+            relative: vec![0.03],
+            model: vec![0.1],
+            model_time: vec![1.0],
+        }
     }
 }
 
@@ -46,7 +54,29 @@ const LARGEST_SHARE: f64 = 0.1;
 impl NoiseModel {
     /// White noise of a torque at rest and a share of the torque: all that most callers know.
     pub(crate) fn short(torque: Vec<f64>, relative: f64) -> Self {
-        NoiseModel { torque, velocity: vec![0.0], relative: vec![relative], model: vec![0.0] }
+        NoiseModel {
+            torque,
+            velocity: vec![0.0],
+            relative: vec![relative],
+            model: vec![0.0],
+            model_time: vec![1.0],
+        }
+    }
+
+    /// What an observer of a `gain` (1/s), called every `dt` (s), leaves of the variance of the torque's white noise.
+    pub(crate) fn torque_share(gain: f64, dt: f64) -> f64 {
+        0.5 * (1.0 - (-gain * dt).exp())
+    }
+
+    /// What it makes of the variance of white noise of the momentum (1/s^2).
+    pub(crate) fn velocity_share(gain: f64, dt: f64) -> f64 {
+        let decay = (-gain * dt).exp();
+        2.0 * ((1.0 - decay) / dt).powi(2) / (1.0 + decay)
+    }
+
+    /// What it leaves of the variance of errors that change over `time` (s).
+    pub(crate) fn model_share(gain: f64, time: f64) -> f64 {
+        gain * time / (1.0 + gain * time)
     }
 
     /// Whether every number can be a standard deviation.
@@ -59,6 +89,7 @@ impl NoiseModel {
             ("velocity", &self.velocity),
             ("relative", &self.relative),
             ("model", &self.model),
+            ("model_time", &self.model_time),
         ] {
             if let Some(value) = values.iter().find(|x| !(0.0..LARGEST).contains(*x)) {
                 return Err(Error::input(name, format!("must be finite and not negative, not {value}")));
@@ -74,6 +105,7 @@ impl NoiseModel {
     pub(crate) fn of(&self, robot: &Robot) -> Result<TorqueNoise> {
         self.check()?;
         robot.per_velocity("noise.velocity", &self.velocity)?;
+        robot.per_velocity("noise.model_time", &self.model_time)?;
         let torque = robot.per_velocity("noise.torque", &self.torque)?;
         let model = robot.per_velocity("noise.model", &self.model)?;
         let relative = robot.per_velocity("noise.relative", &self.relative)?;

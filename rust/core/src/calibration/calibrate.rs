@@ -1,0 +1,290 @@
+//! From contact-free motion to a calibration.
+
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::calibration::{armature, body_inertia};
+use super::contacts::{stretches, without_contact};
+use super::folds::{enough, fit, hold_out, mean_square, HeldOut};
+use super::friction::choose_reversals;
+use super::log::Log;
+use super::noise::{estimate, Judged};
+use super::normal::Joints;
+use super::rows::{rows, Filter, Row, Term};
+use super::solve::Solution;
+use super::torque_model::{Friction, TorqueModel, REVERSALS};
+use super::unknowns::{Unknowns, ARMATURE, BIAS, COULOMB, TERMS, VISCOUS};
+use super::{Calibration, CalibrationOptions, Payload};
+use crate::error::{Error, Result};
+use crate::robot::Robot;
+use crate::torque::NoiseModel;
+
+/// Of the filter that rows go through (1/s): slow enough to leave out noise, fast enough for the inertia of fast motion.
+const GAIN: f64 = 8.0;
+/// A slower log takes a slower filter: the largest step as a share of the filter's time constant.
+const LARGEST_STEP: f64 = 0.3;
+/// Rows a time constant: closer ones say nearly the same.
+const ROWS_PER_TIME: f64 = 4.0;
+/// Memory of all rows (bytes); a long log is read more sparsely.
+const MEMORY: usize = 1 << 28;
+/// Rounds in which weights, left-out contacts and reversals of friction settle.
+const ROUNDS: usize = 3;
+/// After a contact the filters need so many time constants to forget it.
+const FORGOTTEN: f64 = 3.0;
+/// Standard deviation of a rotor inertia before the log is seen, as a share of the link inertia that the joint moves.
+const ROTOR_SHARE: f64 = 1.0;
+/// A centre of mass that is less certain is unknown (m).
+const UNKNOWN: f64 = 1.0;
+/// Correlations smaller than this end the sum.
+const UNCORRELATED: f64 = 0.05;
+
+/// Learns a robot's bias, friction, inertias, payload, delays and noise from motion without contact (algorithm D2).
+///
+/// # Errors
+/// [`Error::Input`] names what is wrong with the log or an option.
+pub fn calibrate(robot: &Robot, log: &Log<'_>, options: &CalibrationOptions) -> Result<Calibration> {
+    options.check(robot)?;
+    log.check(robot)?;
+    if robot.floating_base() {
+        let text = "the base must be fixed: load the robot with the base held, and calibrate its limbs";
+        return Err(Error::input("robot", text));
+    }
+    let step = median_step(log)?;
+    let filter = filter_of(robot, log, step);
+    let fit = Fit::of(robot, log, options, &filter)?;
+    fit.calibration(robot, log, options, step)
+}
+
+/// The rows of a log and what explains them.
+struct Fit {
+    unknowns: Unknowns,
+    joints: Joints,
+    rows: Vec<Row>,
+    used: Vec<bool>,
+    held_out: HeldOut,
+    solution: Solution,
+    covariance: DMatrix<f64>,
+}
+
+impl Fit {
+    fn of(robot: &Robot, log: &Log<'_>, options: &CalibrationOptions, filter: &Filter) -> Result<Self> {
+        let rows = rows(robot, log, filter, &terms());
+        if !enough(rows.len()) {
+            let text = format!(
+                "is too short: {:.1} s give {} rows of the fit; record at least 10 s of motion",
+                log.time[log.len() - 1] - log.time[0],
+                rows.len()
+            );
+            return Err(Error::input("log", text));
+        }
+        let unknowns = Unknowns::new(robot, options.payload_link, term_units(robot, log, &rows)?);
+        let nv = robot.nv();
+        let unexplained: Vec<DVector<f64>> = rows.iter().map(|row| row.unexplained.clone()).collect();
+        let mut used = vec![true; rows.len()];
+        let weights = (0..nv).map(|j| weight(&unexplained, &used, j)).collect();
+        let mut joints = Joints { weights, friction: vec![0; nv] };
+        let margin = (FORGOTTEN / filter.gain / filter.spacing).ceil() as usize;
+        let failed = || Error::input("log", "cannot be fitted: the regression is singular");
+        let mut held_out = hold_out(&unknowns, &joints, &rows, &used).ok_or_else(failed)?;
+        for _ in 0..ROUNDS {
+            used = without_contact(&held_out.residuals, margin);
+            joints.friction = choose_reversals(&unknowns, &joints, &rows, &used, &held_out);
+            joints.weights = (0..nv).map(|j| weight(&held_out.residuals, &used, j)).collect();
+            held_out = hold_out(&unknowns, &joints, &rows, &used).ok_or_else(failed)?;
+        }
+        let (solution, covariance) =
+            fit(&unknowns, &joints, &rows, &used, held_out.change).ok_or_else(failed)?;
+        Ok(Fit { unknowns, joints, rows, used, held_out, solution, covariance })
+    }
+
+    fn calibration(
+        &self,
+        robot: &Robot,
+        log: &Log<'_>,
+        options: &CalibrationOptions,
+        step: f64,
+    ) -> Result<Calibration> {
+        let z = &self.solution.z;
+        let nv = robot.nv();
+        let unknowns = &self.unknowns;
+        let term = |term: usize| (0..nv).map(|j| z[unknowns.term(j, term)]).collect::<Vec<f64>>();
+        let deviation = |term: usize| {
+            let variance = |j| self.covariance[(unknowns.term(j, term), unknowns.term(j, term))];
+            (0..nv).map(|j| f64::sqrt(variance(j))).collect::<Vec<f64>>()
+        };
+        let step_of = |rows: [usize; 2]| rows.map(|row| log.time[self.rows[row].index]);
+        let without_payload = unknowns.without_payload(z);
+        Ok(Calibration {
+            torque_bias: term(BIAS),
+            torque_bias_std: deviation(BIAS),
+            friction: self.friction(&unknowns.correction(z)),
+            coulomb_std: deviation(COULOMB),
+            viscous_std: deviation(VISCOUS),
+            armature: armature(robot)
+                .iter()
+                .zip(term(ARMATURE))
+                .map(|(before, more)| before + more)
+                .collect(),
+            armature_std: deviation(ARMATURE),
+            bodies: without_payload.iter().enumerate().map(|(k, x)| body_inertia(robot, k, x)).collect(),
+            payload: options.payload_link.and_then(|link| self.payload(&robot[link].name)),
+            inertial_change: self.held_out.change,
+            noise: self.noise(robot, log, step)?,
+            residual: (0..nv).map(|j| mean_square(&self.held_out.residuals, &self.used, j).sqrt()).collect(),
+            false_alarms_per_hour: options.false_alarms_per_hour,
+            contacts: stretches(&self.used).into_iter().map(step_of).collect(),
+            ..Calibration::of_description(robot)
+        })
+    }
+
+    /// The payload, with its uncertainty.
+    fn payload(&self, link: &str) -> Option<Payload> {
+        let held = self.unknowns.held_payload(&self.solution.z)?;
+        let first = self.unknowns.payload()?;
+        let covariance = |a: usize, b: usize| self.covariance[(first + a, first + b)];
+        // The centre is a quotient of two unknowns.
+        let com_variance = |axis: usize| {
+            let com = held.com[axis];
+            let moment = 1 + axis;
+            (covariance(moment, moment) - 2.0 * com * covariance(moment, 0) + com * com * covariance(0, 0))
+                / held.mass.max(f64::MIN_POSITIVE).powi(2)
+        };
+        Some(Payload {
+            link: link.into(),
+            mass: held.mass,
+            mass_std: covariance(0, 0).sqrt(),
+            com: held.com.into(),
+            com_std: std::array::from_fn(|axis| com_variance(axis).max(0.0).sqrt().min(UNKNOWN)),
+            moment: held.moment,
+        })
+    }
+
+    /// The noise, from blocks that were not fitted.
+    fn noise(&self, robot: &Robot, log: &Log<'_>, step: f64) -> Result<NoiseModel> {
+        let mut skipped = vec![false; log.len()];
+        for [first, last] in stretches(&self.used) {
+            skipped[self.rows[first].index..=self.rows[last].index].fill(true);
+        }
+        let corrections = &self.held_out.corrections;
+        let part = |(block, correction): (usize, &DVector<f64>)| Judged {
+            robot: Arc::new(self.corrected(robot, correction)),
+            torque: self.torque_model(correction),
+            rows: self.log_rows(block, corrections.len(), log.len()),
+        };
+        let parts: Vec<Judged> = corrections.iter().enumerate().map(part).collect();
+        estimate(robot, log, &parts, &skipped, step)
+    }
+
+    /// The rows of the log that belong to a block of the fit.
+    fn log_rows(&self, block: usize, blocks: usize, rows: usize) -> std::ops::Range<usize> {
+        let first = |block: usize| {
+            let row = (block * self.rows.len()).div_ceil(blocks);
+            self.rows.get(row).map_or(rows, |row| row.index)
+        };
+        let from = if block == 0 { 0 } else { first(block) };
+        from..first(block + 1)
+    }
+
+    fn corrected(&self, robot: &Robot, correction: &DVector<f64>) -> Robot {
+        let described = robot.inertial_parameters();
+        let bodies: Vec<_> = described
+            .iter()
+            .enumerate()
+            .map(|(index, body)| std::array::from_fn(|k| body[k] + correction[10 * index + k]))
+            .collect();
+        let rotor = |(j, before): (usize, f64)| before + correction[self.unknowns.term_column(j, ARMATURE)];
+        let armature: Vec<f64> = armature(robot).into_iter().enumerate().map(rotor).collect();
+        robot.with_inertial_parameters(&bodies, &armature)
+    }
+
+    fn torque_model(&self, correction: &DVector<f64>) -> TorqueModel {
+        let nv = self.joints.weights.len();
+        let bias: Vec<f64> = (0..nv).map(|j| correction[self.unknowns.term_column(j, BIAS)]).collect();
+        TorqueModel::new(&vec![1.0; nv], &bias, &self.friction(correction))
+    }
+
+    fn friction(&self, correction: &DVector<f64>) -> Friction {
+        let joints = 0..self.joints.weights.len();
+        let term = |term: usize| {
+            joints.clone().map(|j| correction[self.unknowns.term_column(j, term)]).collect::<Vec<f64>>()
+        };
+        Friction {
+            coulomb: term(COULOMB),
+            viscous: term(VISCOUS),
+            reversal: self.joints.friction.iter().map(|k| REVERSALS[*k]).collect(),
+        }
+    }
+}
+
+/// The terms of each row, in the order that [`super::normal`] reads.
+fn terms() -> Vec<Term> {
+    let mut terms = vec![Term::Bias];
+    terms.extend(REVERSALS.map(Term::Coulomb));
+    terms.extend([Term::Viscous, Term::Armature]);
+    terms
+}
+
+/// The time between most rows (s).
+fn median_step(log: &Log<'_>) -> Result<f64> {
+    let mut steps: Vec<f64> = log.time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    let middle = steps.get(steps.len() / 2).copied();
+    middle.ok_or_else(|| Error::input("log", "must have rows: record at least 10 s of motion"))
+}
+
+fn filter_of(robot: &Robot, log: &Log<'_>, step: f64) -> Filter {
+    let gain = GAIN.min(LARGEST_STEP / step);
+    let columns = 10 * (robot.body_count() - 1) + terms().len();
+    let most = (MEMORY / (8 * columns * robot.nv())).max(1);
+    let duration = log.time[log.len() - 1] - log.time[0];
+    let spacing = f64::max(1.0 / (ROWS_PER_TIME * gain), duration / most as f64);
+    // Not a row later because of rounding.
+    Filter { gain, spacing: spacing.max(step) - 0.01 * step, longest_step: super::LONGEST_STEPS * step }
+}
+
+/// How large each term of a joint may be: as its torques are, or as the inertia that it moves.
+fn term_units(robot: &Robot, log: &Log<'_>, rows: &[Row]) -> Result<Vec<[f64; TERMS]>> {
+    let mut units = vec![[0.0; TERMS]; robot.nv()];
+    let mean = 1.0 / rows.len() as f64;
+    for row in rows {
+        let mass = robot.mass_matrix(log.q_of(robot, row.index))?;
+        let (tau, v) = (log.tau_of(row.index), log.v_of(robot, row.index));
+        for (j, unit) in units.iter_mut().enumerate() {
+            unit[BIAS] += tau[j] * tau[j] * mean;
+            unit[VISCOUS] += v[j] * v[j] * mean;
+            unit[ARMATURE] += mass[(j, j)] * mean;
+        }
+    }
+    for unit in &mut units {
+        let (torque, velocity) = (unit[BIAS].sqrt().max(SMALLEST_TORQUE), unit[VISCOUS].sqrt());
+        *unit = [torque, torque, torque / velocity.max(SMALLEST_VELOCITY), ROTOR_SHARE * unit[ARMATURE]];
+    }
+    Ok(units)
+}
+
+/// A joint whose torques are smaller counts as if they were this large (Nm).
+const SMALLEST_TORQUE: f64 = 1e-3;
+/// A joint that moves more slowly counts as if it moved so fast (rad/s; m/s).
+const SMALLEST_VELOCITY: f64 = 1e-2;
+
+/// How much a row of one joint counts: one over its mean square, and over the number of rows that err together.
+fn weight(residuals: &[DVector<f64>], used: &[bool], joint: usize) -> f64 {
+    let square = mean_square(residuals, used, joint).max(f64::MIN_POSITIVE);
+    1.0 / (square * correlated_rows(residuals, joint, square))
+}
+
+/// So many rows say as much as one whose error is independent of the others'.
+fn correlated_rows(residuals: &[DVector<f64>], joint: usize, square: f64) -> f64 {
+    let count = residuals.len();
+    let mut sum = 1.0;
+    for lag in 1..count / 10 {
+        let products = (lag..count).map(|k| residuals[k][joint] * residuals[k - lag][joint]);
+        let correlation = products.sum::<f64>() / ((count - lag) as f64 * square);
+        if correlation < UNCORRELATED {
+            break;
+        }
+        sum += 2.0 * correlation;
+    }
+    sum
+}

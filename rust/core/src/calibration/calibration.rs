@@ -1,0 +1,272 @@
+//! What contact-free motion teaches of one robot.
+
+use nalgebra::Vector3;
+
+use super::fingerprint::fingerprint;
+use super::torque_model::{Friction, TorqueModel, REVERSALS};
+use crate::error::{Error, Result};
+use crate::robot::inertial_parameters::{of_inertia, to_inertia, Parameters};
+use crate::robot::{LinkIndex, Robot};
+use crate::spatial::Pose;
+use crate::torque::NoiseModel;
+
+/// What contact-free motion teaches of one robot; vectors by velocity variable.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+pub struct Calibration {
+    /// Name of the robot that it is of.
+    pub robot: String,
+    /// Of that robot's joints and inertias; another robot's is refused.
+    pub fingerprint: String,
+    /// Names of its joints.
+    pub joints: Vec<String>,
+    /// Constant torque that the measurement adds (Nm; N for sliding joints).
+    pub torque_bias: Vec<f64>,
+    /// One standard deviation.
+    pub torque_bias_std: Vec<f64>,
+    /// Factor from measured to true torque, its sign included.
+    pub torque_scale: Vec<f64>,
+    /// Whether the torques are external torques of the vendor: then only bias, scale and noise are corrected.
+    pub torque_is_external: bool,
+    /// Friction inside the measured torque.
+    pub friction: Friction,
+    /// One standard deviation of each Coulomb friction (Nm; N).
+    pub coulomb_std: Vec<f64>,
+    /// One standard deviation of each viscous friction (Nm s/rad; N s/m).
+    pub viscous_std: Vec<f64>,
+    /// Rotor inertia, reflected through the gear (kg m^2; kg).
+    pub armature: Vec<f64>,
+    /// One standard deviation.
+    pub armature_std: Vec<f64>,
+    /// Inertias of all that moves with each joint, without the payload.
+    pub bodies: Vec<BodyInertia>,
+    /// What the description lacks on one link, where it was asked for.
+    pub payload: Option<Payload>,
+    /// The share by which inertias may differ from the description, as held-out blocks of the log chose it.
+    pub inertial_change: f64,
+    /// How late the velocity is against the position (s).
+    pub velocity_delay: f64,
+    /// How late the torque is against the position (s).
+    pub torque_delay: f64,
+    /// What force/torque sensors read without load, by name (N, Nm).
+    pub sensor_offsets: Vec<(String, [f64; 6])>,
+    /// Errors of the external torque that are left.
+    pub noise: NoiseModel,
+    /// What is left of the low-passed torque, on blocks of the log that were not fitted (Nm; N).
+    pub residual: Vec<f64>,
+    /// The rate of false alarms that thresholds are set for (1/h).
+    pub false_alarms_per_hour: f64,
+    /// From when to when contacts were found in the log and left out (s).
+    pub contacts: Vec<[f64; 2]>,
+    /// What the motion could not tell, and which motion would.
+    pub notes: Vec<String>,
+}
+
+/// The inertia of all that moves with one joint, in the frame of the link that the joint moves.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+pub struct BodyInertia {
+    /// That link.
+    pub link: String,
+    /// Mass (kg).
+    pub mass: f64,
+    /// Centre of mass (m).
+    pub com: [f64; 3],
+    /// About the centre of mass: `xx, xy, yy, xz, yz, zz` (kg m^2).
+    pub inertia: [f64; 6],
+}
+
+/// A payload at a link.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+pub struct Payload {
+    /// The link that holds it.
+    pub link: String,
+    /// Mass (kg).
+    pub mass: f64,
+    /// One standard deviation (kg).
+    pub mass_std: f64,
+    /// Centre of mass in the link's frame (m).
+    pub com: [f64; 3],
+    /// One standard deviation of each coordinate (m).
+    pub com_std: [f64; 3],
+    /// Moment of inertia about the centre of mass, taken to be the same about all axes (kg m^2).
+    pub moment: f64,
+}
+
+/// How to calibrate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CalibrationOptions {
+    /// The rate of false alarms that thresholds are set for (1/h).
+    pub false_alarms_per_hour: f64,
+    /// The link that holds a payload which the description lacks.
+    pub payload_link: Option<LinkIndex>,
+}
+
+impl Default for CalibrationOptions {
+    fn default() -> Self {
+        CalibrationOptions { false_alarms_per_hour: 1.0, payload_link: None }
+    }
+}
+
+impl CalibrationOptions {
+    pub(super) fn check(&self, robot: &Robot) -> Result<()> {
+        if !(self.false_alarms_per_hour > 0.0 && self.false_alarms_per_hour.is_finite()) {
+            let text = format!("must be positive [1/h], not {}", self.false_alarms_per_hour);
+            return Err(Error::input("false_alarms_per_hour", text));
+        }
+        match self.payload_link {
+            Some(link) if robot[link].body == 0 => {
+                let text = format!("'{}' is fixed to the world: no joint carries its load", robot[link].name);
+                Err(Error::input("payload_link", text))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Calibration {
+    /// The description as it is: nothing to correct.
+    pub fn of_description(robot: &Robot) -> Self {
+        let zeros = vec![0.0; robot.nv()];
+        let reversal = vec![REVERSALS[0]; robot.nv()];
+        Calibration {
+            robot: robot.name().into(),
+            fingerprint: fingerprint(robot),
+            joints: robot.joint_names().to_vec(),
+            torque_bias: zeros.clone(),
+            torque_bias_std: zeros.clone(),
+            torque_scale: vec![1.0; robot.nv()],
+            torque_is_external: false,
+            friction: Friction { coulomb: zeros.clone(), viscous: zeros.clone(), reversal },
+            coulomb_std: zeros.clone(),
+            viscous_std: zeros.clone(),
+            armature: armature(robot),
+            armature_std: zeros.clone(),
+            bodies: robot
+                .inertial_parameters()
+                .iter()
+                .enumerate()
+                .map(|(k, x)| body_inertia(robot, k, x))
+                .collect(),
+            payload: None,
+            inertial_change: 0.0,
+            velocity_delay: 0.0,
+            torque_delay: 0.0,
+            sensor_offsets: vec![],
+            noise: NoiseModel::default(),
+            residual: zeros,
+            false_alarms_per_hour: 1.0,
+            contacts: vec![],
+            notes: vec![],
+        }
+    }
+
+    /// Whether it is of this robot and each number can be used.
+    ///
+    /// # Errors
+    /// [`Error::Input`] says what differs.
+    pub fn check(&self, robot: &Robot) -> Result<()> {
+        if self.joints != robot.joint_names() {
+            let text = format!("is of '{}', whose joints are {}", self.robot, self.joints.join(", "));
+            return Err(Error::input("calibration", text));
+        }
+        if self.fingerprint != fingerprint(robot) {
+            let text = format!(
+                "is of another description of '{}': joints or inertias differ; calibrate this robot",
+                self.robot
+            );
+            return Err(Error::input("calibration", text));
+        }
+        let positive = |values: &[f64]| values.iter().all(|x| *x >= 0.0);
+        let columns = [
+            ("torque_bias", &self.torque_bias, true),
+            ("torque_scale", &self.torque_scale, !self.torque_scale.contains(&0.0)),
+            ("friction.coulomb", &self.friction.coulomb, positive(&self.friction.coulomb)),
+            ("friction.viscous", &self.friction.viscous, positive(&self.friction.viscous)),
+            ("armature", &self.armature, positive(&self.armature)),
+        ];
+        for (name, values, is_right) in columns {
+            if values.len() != robot.nv() || !is_right || !values.iter().all(|x| x.is_finite()) {
+                let text = format!("{name}: must be {} finite numbers, none with a wrong sign", robot.nv());
+                return Err(Error::input("calibration", text));
+            }
+        }
+        let widths = self.friction.reversal.iter().map(|reversal| reversal.width());
+        if widths.len() != robot.nv() || !widths.into_iter().all(|width| width > 0.0 && width.is_finite()) {
+            let text = format!("friction.reversal: must be {} positive numbers", robot.nv());
+            return Err(Error::input("calibration", text));
+        }
+        if self.bodies.len() != robot.body_count() - 1 {
+            let text = format!("bodies: must be {}, one a joint", robot.body_count() - 1);
+            return Err(Error::input("calibration", text));
+        }
+        for (name, delay) in [("velocity_delay", self.velocity_delay), ("torque_delay", self.torque_delay)] {
+            if !(0.0..LONGEST_DELAY).contains(&delay) {
+                let text = format!("{name}: must lie between 0 and {LONGEST_DELAY} s, not {delay}");
+                return Err(Error::input("calibration", text));
+            }
+        }
+        self.noise.of(robot).map(|_| ())
+    }
+
+    /// The robot with the inertias that the motion shows, the payload included.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where the calibration is of another robot.
+    pub fn corrected(&self, robot: &Robot) -> Result<Robot> {
+        self.check(robot)?;
+        let bodies = self.bodies.iter().enumerate().map(|(index, body)| {
+            let placement = moved_link(robot, index).map_or_else(Pose::identity, |(_, placement)| placement);
+            let com = placement.transform_point(&Vector3::from(body.com));
+            let about_com = of_inertia(0.0, &Vector3::zeros(), &Default::default());
+            let mut parameters = about_com;
+            parameters[4..].copy_from_slice(&body.inertia);
+            let (_, _, inertia) = to_inertia(&parameters);
+            of_inertia(body.mass, &com, &(placement.rotation * inertia * placement.rotation.transpose()))
+        });
+        let corrected = robot.with_inertial_parameters(&bodies.collect::<Vec<_>>(), &self.armature);
+        match &self.payload {
+            Some(payload) => {
+                let inertia = nalgebra::Matrix3::from_diagonal_element(payload.moment);
+                corrected.with_payload(robot.link(&payload.link)?, payload.mass, payload.com.into(), inertia)
+            }
+            None => Ok(corrected),
+        }
+    }
+
+    #[allow(dead_code)] // until observers take it
+    pub(crate) fn torque_model(&self) -> TorqueModel {
+        TorqueModel::new(&self.torque_scale, &self.torque_bias, &self.friction)
+    }
+}
+
+/// A longer delay is another fault (s).
+const LONGEST_DELAY: f64 = 1.0;
+
+/// Rotor inertias, by joint.
+pub(super) fn armature(robot: &Robot) -> Vec<f64> {
+    robot.bodies[1..].iter().map(|body| body.armature).collect()
+}
+
+/// The link that the joint of a body (the world left out) moves, and its pose in the body.
+fn moved_link(robot: &Robot, body: usize) -> Option<(&str, Pose)> {
+    robot.links().iter().find(|link| link.body == body + 1).map(|link| (link.name.as_str(), link.placement))
+}
+
+/// The inertia of a body (the world left out) from its parameters.
+pub(super) fn body_inertia(robot: &Robot, body: usize, parameters: &Parameters) -> BodyInertia {
+    let (link, placement) = moved_link(robot, body).unwrap_or(("", Pose::identity()));
+    let (mass, com, inertia) = to_inertia(parameters);
+    let inertia = placement.rotation.transpose() * inertia * placement.rotation;
+    let parameters = of_inertia(0.0, &Vector3::zeros(), &inertia);
+    BodyInertia {
+        link: link.into(),
+        mass,
+        com: placement.inverse_transform_point(&com).into(),
+        inertia: std::array::from_fn(|k| parameters[4 + k]),
+    }
+}

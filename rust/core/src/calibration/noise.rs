@@ -1,0 +1,278 @@
+//! The noise of a log: white noise of torque and velocity from sample to sample, and slow errors that the fit leaves.
+
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::log::Log;
+use super::torque_model::TorqueModel;
+use crate::error::Result;
+use crate::observer::MomentumObserver;
+use crate::robot::Robot;
+use crate::torque::NoiseModel;
+use crate::Sample;
+
+/// Gains of the observers whose outputs are looked at (1/s): slow to fast.
+const GAINS: [f64; 4] = [2.0, 8.0, 50.0, 200.0];
+/// The largest step of an observer, as a share of its time constant, at which its output still means something.
+const LARGEST_STEP: f64 = 0.6;
+/// So many time constants after a start an observer has forgotten it.
+const SETTLED: f64 = 4.0;
+/// Share of the largest differences that count as motion or contact, not noise.
+const TRIMMED: f64 = 0.05;
+/// What trimming that share takes from the mean square of Gaussian numbers.
+const TRIMMED_SQUARE: f64 = 0.7587;
+/// Error in proportion to the contact's own torque: hysteresis and scale of gears, which no free motion shows.
+const RELATIVE: f64 = 0.05;
+/// Steps of coordinate descent; each unknown has its own row in most equations.
+const STEPS: usize = 100;
+/// Noise of a velocity that was low-passed at 60 Hz is so many times its first differences at 1 kHz.
+const MOST_VELOCITY: f64 = 2.0;
+/// Times over which slow errors may change (s): from friction that turns round to a bias.
+const TIMES: [f64; 8] = [0.005, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 10.0];
+const ROUNDS: usize = 3;
+
+/// Orders of the differences that tell noise from motion. Motion vanishes as the order grows, white noise does not: the
+/// smallest result holds least of the motion.
+const ORDERS: std::ops::RangeInclusive<usize> = 2..=6;
+
+/// White noise per sample under a smooth motion.
+pub(super) fn white(value: impl Fn(usize) -> f64, count: usize) -> f64 {
+    ORDERS.map(|order| differences(&value, count, order)).fold(f64::INFINITY, f64::min)
+}
+
+/// The root mean square of differences of one order, as a share of what they make of white noise.
+fn differences(value: &impl Fn(usize) -> f64, count: usize, order: usize) -> f64 {
+    if count < 10 * order {
+        return 0.0;
+    }
+    let mut column: Vec<f64> = (0..count).map(value).collect();
+    let mut growth = 1.0;
+    for n in 1..=order {
+        (0..column.len() - 1).for_each(|k| column[k] = column[k + 1] - column[k]);
+        column.pop();
+        // The sum of squared binomial coefficients, (2n)! / (n!)^2.
+        growth *= 2.0 * (2 * n - 1) as f64 / n as f64;
+    }
+    let mut squares: Vec<f64> = column.iter().map(|x| x * x).collect();
+    squares.sort_by(f64::total_cmp);
+    let kept = ((1.0 - TRIMMED) * squares.len() as f64).ceil() as usize;
+    let mean = squares[..kept].iter().sum::<f64>() / kept as f64;
+    (mean / TRIMMED_SQUARE / growth).sqrt()
+}
+
+/// A part of a log and the model that was fitted without it.
+pub(super) struct Judged {
+    pub robot: Arc<Robot>,
+    pub torque: TorqueModel,
+    pub rows: std::ops::Range<usize>,
+}
+
+/// The mean squares of the observers' outputs, by gain: `(gain, [by joint])`, and mean squares of the mass matrix.
+struct Spread {
+    gains: Vec<f64>,
+    /// By gain and joint (Nm squared).
+    squares: Vec<DVector<f64>>,
+    /// Mean squares of the mass matrix's entries.
+    mass: DMatrix<f64>,
+}
+
+/// The noise model that the parts of a log show; `skipped` says which rows have a contact.
+pub(super) fn estimate(
+    robot: &Robot,
+    log: &Log<'_>,
+    parts: &[Judged],
+    skipped: &[bool],
+    step: f64,
+) -> Result<NoiseModel> {
+    let nv = robot.nv();
+    let torque: Vec<f64> = (0..nv).map(|j| white(|k| log.tau_of(k)[j], log.len())).collect();
+    let velocity = (0..nv).map(|j| {
+        let speed = |k: usize| log.v_of(robot, k)[j];
+        // Low-passed noise is not white: first differences hold nearly all of it, and all of the motion.
+        [white(speed, log.len()), MOST_VELOCITY * differences(&speed, log.len(), 1)]
+    });
+    let spread = spread(robot, log, parts, skipped, step)?;
+    Ok(split(&spread, torque, &velocity.collect::<Vec<_>>(), step))
+}
+
+fn spread(robot: &Robot, log: &Log<'_>, parts: &[Judged], skipped: &[bool], step: f64) -> Result<Spread> {
+    let nv = robot.nv();
+    let mut gains: Vec<f64> = GAINS.into_iter().filter(|gain| gain * step <= LARGEST_STEP).collect();
+    if gains.is_empty() {
+        gains.push(LARGEST_STEP / step);
+    }
+    let mut squares = vec![DVector::zeros(nv); gains.len()];
+    let mut counts = vec![0.0; gains.len()];
+    let (mut mass, mut poses) = (DMatrix::zeros(nv, nv), 0.0);
+    let mut tau = vec![0.0; nv];
+    for part in parts {
+        for (which, &gain) in gains.iter().enumerate() {
+            let mut observer = MomentumObserver::new(Arc::clone(&part.robot), step, &[gain])?;
+            let settled = SETTLED / gain;
+            let mut torque = part.torque.clone();
+            let mut since = 0.0;
+            for row in part.rows.clone() {
+                let dt = if row == part.rows.start { step } else { log.time[row] - log.time[row - 1] };
+                if dt > super::LONGEST_STEPS * step || skipped[row] {
+                    observer.reset();
+                    torque.reset();
+                    since = 0.0;
+                    continue;
+                }
+                tau.copy_from_slice(log.tau_of(row));
+                let v = log.v_of(robot, row);
+                torque.correct(v, dt, &mut tau);
+                let external = observer.update(&Sample::new(log.q_of(robot, row), v, &tau).dt(dt))?;
+                since += dt;
+                if since > settled {
+                    for (sum, r) in squares[which].iter_mut().zip(external) {
+                        *sum += r * r;
+                    }
+                    counts[which] += 1.0;
+                }
+            }
+        }
+        // The mass matrix changes slowly: a few poses say enough.
+        let stride = (part.rows.len() / 20).max(1);
+        for row in part.rows.clone().step_by(stride) {
+            mass += part.robot.mass_matrix(log.q_of(robot, row))?.map(|m| m * m);
+            poses += 1.0;
+        }
+    }
+    for (sum, count) in squares.iter_mut().zip(&counts) {
+        *sum /= f64::max(*count, 1.0);
+    }
+    let known: Vec<usize> = (0..gains.len()).filter(|k| counts[*k] > 0.0).collect();
+    Ok(Spread {
+        gains: known.iter().map(|k| gains[*k]).collect(),
+        squares: known.iter().map(|k| squares[*k].clone()).collect(),
+        mass: mass / f64::max(poses, 1.0),
+    })
+}
+
+/// The white noise of the velocity (between limits), and the size and time of slow errors that give the observers' mean
+/// squares; none of these comes out smaller than it was.
+fn split(spread: &Spread, torque: Vec<f64>, velocity: &[[f64; 2]], step: f64) -> NoiseModel {
+    let nv = torque.len();
+    let mut times = vec![TIMES[TIMES.len() / 2]; nv];
+    let mut parts = Parts::of(velocity);
+    for _ in 0..ROUNDS {
+        for (j, time) in times.iter_mut().enumerate() {
+            let misfit = |time: f64| {
+                let mut model = parts.model[j];
+                spread.fit_model(&torque, &parts.velocity, time, step, j, &mut model)
+            };
+            let best = TIMES.into_iter().min_by(|a, b| misfit(*a).total_cmp(&misfit(*b)));
+            *time = best.unwrap_or(*time);
+        }
+        spread.fit(&torque, velocity, &times, step, &mut parts);
+    }
+    for (j, time) in times.iter().enumerate() {
+        let lacking = (0..spread.gains.len()).map(|g| {
+            let share = NoiseModel::model_share(spread.gains[g], *time);
+            (spread.squares[g][j] - spread.without_model(&torque, &parts.velocity, step, g, j)) / share
+        });
+        parts.model[j] = lacking.fold(parts.model[j], f64::max);
+    }
+    let roots = |squares: Vec<f64>| squares.into_iter().map(f64::sqrt).collect::<Vec<f64>>();
+    NoiseModel {
+        torque,
+        velocity: roots(parts.velocity),
+        relative: vec![RELATIVE; nv],
+        model: roots(parts.model).into_iter().map(|x| x.max(SMALLEST)).collect(),
+        model_time: times,
+    }
+}
+
+/// Squares of standard deviations.
+struct Parts {
+    velocity: Vec<f64>,
+    model: Vec<f64>,
+}
+
+impl Parts {
+    fn of(velocity: &[[f64; 2]]) -> Self {
+        Parts {
+            velocity: velocity.iter().map(|[least, _]| least * least).collect(),
+            model: vec![0.0; velocity.len()],
+        }
+    }
+}
+
+impl Spread {
+    /// What torque and velocity noise make of a joint's mean square at one of the gains.
+    fn without_model(&self, torque: &[f64], velocity: &[f64], step: f64, gain: usize, j: usize) -> f64 {
+        let speeds: f64 = velocity.iter().enumerate().map(|(k, square)| self.mass[(j, k)] * square).sum();
+        let gain = self.gains[gain];
+        torque[j].powi(2) * NoiseModel::torque_share(gain, step)
+            + NoiseModel::velocity_share(gain, step) * speeds
+    }
+
+    /// Sets the slow errors of one joint; returns the misfit, relative to the mean squares.
+    fn fit_model(
+        &self,
+        torque: &[f64],
+        velocity: &[f64],
+        time: f64,
+        step: f64,
+        j: usize,
+        model: &mut f64,
+    ) -> f64 {
+        let rows = (0..self.gains.len()).map(|g| {
+            let total = self.squares[g][j].max(f64::MIN_POSITIVE);
+            let rest = (total - self.without_model(torque, velocity, step, g, j)) / total;
+            (NoiseModel::model_share(self.gains[g], time) / total, rest)
+        });
+        let rows: Vec<(f64, f64)> = rows.collect();
+        let norm: f64 = rows.iter().map(|(column, _)| column * column).sum();
+        let slope: f64 = rows.iter().map(|(column, rest)| column * rest).sum();
+        *model = (slope / norm).max(0.0);
+        rows.iter().map(|(column, rest)| (rest - column * *model).powi(2)).sum()
+    }
+
+    /// Sets all slow errors and, between their limits, the velocities' noise, by coordinate descent.
+    fn fit(&self, torque: &[f64], limits: &[[f64; 2]], times: &[f64], step: f64, parts: &mut Parts) {
+        for _ in 0..STEPS {
+            for (j, time) in times.iter().enumerate() {
+                let mut model = parts.model[j];
+                self.fit_model(torque, &parts.velocity, *time, step, j, &mut model);
+                parts.model[j] = model;
+            }
+            for (k, limit) in limits.iter().enumerate() {
+                let (mut norm, mut slope) = (0.0, 0.0);
+                for (g, &gain) in self.gains.iter().enumerate() {
+                    for (j, time) in times.iter().enumerate() {
+                        let total = self.squares[g][j].max(f64::MIN_POSITIVE);
+                        let column = NoiseModel::velocity_share(gain, step) * self.mass[(j, k)] / total;
+                        let known = self.without_model(torque, &parts.velocity, step, g, j)
+                            + NoiseModel::model_share(gain, *time) * parts.model[j];
+                        norm += column * column;
+                        slope += column * (total - known) / total;
+                    }
+                }
+                if norm > 0.0 {
+                    let [least, most] = limit.map(|limit| limit * limit);
+                    parts.velocity[k] = (parts.velocity[k] + slope / norm).clamp(least, most.max(least));
+                }
+            }
+        }
+    }
+}
+
+/// A joint that nothing is left of has errors of rounding (Nm).
+const SMALLEST: f64 = 1e-6;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::random::Stream;
+
+    #[test]
+    fn white_noise_is_found_under_motion() {
+        let noise = Stream::new(3);
+        let signal = |k: usize| (k as f64 * 0.006).sin() * 20.0 + 0.05 * noise.normals(2 * k as u64)[0];
+        let found = white(signal, 20_000);
+        assert!((found - 0.05).abs() < 0.001, "{found}");
+    }
+}

@@ -1,0 +1,86 @@
+//! Normal equations of a set of rows.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::rows::Row;
+use super::torque_model::REVERSALS;
+use super::unknowns::{Unknowns, ARMATURE, BIAS, COULOMB, TERMS, VISCOUS};
+
+/// Columns of a row's terms: bias, Coulomb friction of each reversal, viscous friction, rotor inertia.
+const FIRST_FRICTION: usize = 1;
+const AFTER_FRICTION: usize = FIRST_FRICTION + REVERSALS.len();
+
+/// How joints count: the weight of each (one over Nm squared), and how friction turns round.
+#[derive(Debug, Clone)]
+pub(super) struct Joints {
+    pub weights: Vec<f64>,
+    pub friction: Vec<usize>,
+}
+
+/// `H x = g`, the least squares of the rows' unexplained torque by the columns of the regression.
+#[derive(Debug, Clone)]
+pub(super) struct Normal {
+    pub h: DMatrix<f64>,
+    pub g: DVector<f64>,
+}
+
+impl Normal {
+    /// Of some rows.
+    pub fn of<'a>(unknowns: &Unknowns, joints: &Joints, rows: impl Iterator<Item = &'a Row>) -> Self {
+        let size = unknowns.columns();
+        let mut normal = Normal { h: DMatrix::zeros(size, size), g: DVector::zeros(size) };
+        let mut entries = vec![];
+        for row in rows {
+            for (joint, weight) in joints.weights.iter().enumerate() {
+                entries.clear();
+                columns(unknowns, joints, row, joint, &mut entries);
+                for (k, &(column, value)) in entries.iter().enumerate() {
+                    let weighted = weight * value;
+                    normal.g[column] += weighted * row.unexplained[joint];
+                    for &(other, with) in &entries[..=k] {
+                        normal.h[(column, other)] += weighted * with;
+                    }
+                }
+            }
+        }
+        normal.h.fill_upper_triangle_with_lower_triangle();
+        normal
+    }
+
+    /// Adds the rows of another set.
+    pub fn add(&mut self, other: &Normal) {
+        self.h += &other.h;
+        self.g += &other.g;
+    }
+}
+
+/// What a correction leaves of a row's unexplained torque, on one joint (Nm).
+pub(super) fn residual(
+    unknowns: &Unknowns,
+    joints: &Joints,
+    row: &Row,
+    joint: usize,
+    correction: &DVector<f64>,
+) -> f64 {
+    let mut entries = Vec::with_capacity(unknowns.columns());
+    columns(unknowns, joints, row, joint, &mut entries);
+    row.unexplained[joint] - entries.iter().map(|&(column, value)| value * correction[column]).sum::<f64>()
+}
+
+/// A joint's own terms in a row, with a choice of how friction turns round.
+pub(super) fn own_terms(row: &Row, joint: usize, friction: usize) -> [f64; TERMS] {
+    let mut terms = [0.0; TERMS];
+    terms[BIAS] = row.terms[(joint, 0)];
+    terms[COULOMB] = row.terms[(joint, FIRST_FRICTION + friction)];
+    terms[VISCOUS] = row.terms[(joint, AFTER_FRICTION)];
+    terms[ARMATURE] = row.terms[(joint, AFTER_FRICTION + 1)];
+    terms
+}
+
+/// The columns that are not zero, with their values.
+fn columns(unknowns: &Unknowns, joints: &Joints, row: &Row, joint: usize, entries: &mut Vec<(usize, f64)>) {
+    let inertial = row.inertial.row(joint);
+    entries.extend(inertial.iter().enumerate().filter(|(_, value)| **value != 0.0).map(|(k, v)| (k, *v)));
+    let terms = own_terms(row, joint, joints.friction[joint]);
+    entries.extend(terms.iter().enumerate().map(|(term, v)| (unknowns.term_column(joint, term), *v)));
+}

@@ -1,0 +1,158 @@
+//! From a measured torque to the torque that moves the links: scale, bias and friction of each joint.
+
+/// Friction of the joints, by velocity variable.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+pub struct Friction {
+    /// Torque against the motion, whatever its speed (Nm; N for sliding joints).
+    pub coulomb: Vec<f64>,
+    /// Torque in proportion to the velocity (Nm s/rad; N s/m).
+    pub viscous: Vec<f64>,
+    /// How Coulomb friction turns round.
+    pub reversal: Vec<Reversal>,
+}
+
+/// How Coulomb friction goes from one direction to the other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+pub enum Reversal {
+    /// With the velocity, as `tanh(v / v_s)` of this `v_s` (rad/s; m/s): none at rest.
+    Velocity(f64),
+    /// With the displacement since the motion last turned round, whole after twice this length (rad; m): a joint at rest
+    /// keeps its friction (Dahl 1968, piecewise linear).
+    Displacement(f64),
+}
+
+/// The ways of turning round among which a log chooses, the usual one first: from abrupt to smooth.
+pub(crate) const REVERSALS: [Reversal; 8] = [
+    Reversal::Velocity(0.03),
+    Reversal::Velocity(0.003),
+    Reversal::Velocity(0.01),
+    Reversal::Velocity(0.1),
+    Reversal::Displacement(0.003),
+    Reversal::Displacement(0.01),
+    Reversal::Displacement(0.03),
+    Reversal::Displacement(0.1),
+];
+
+impl Reversal {
+    /// The velocity (rad/s; m/s) or length (rad; m).
+    pub fn width(self) -> f64 {
+        match self {
+            Reversal::Velocity(width) | Reversal::Displacement(width) => width,
+        }
+    }
+
+    /// The share of Coulomb friction at velocity `v` after a step of `dt` (s), from -1 to 1; `last` is that of before.
+    #[inline]
+    pub(crate) fn share(self, last: f64, v: f64, dt: f64) -> f64 {
+        match self {
+            Reversal::Velocity(slow) => sliding(v / slow),
+            Reversal::Displacement(length) => (last + v * dt / length).clamp(-1.0, 1.0),
+        }
+    }
+}
+
+/// Beyond this argument the quotient below exceeds one.
+const SATURATED: f64 = 4.97;
+
+/// The hyperbolic tangent to 2e-4 (its continued fraction to the seventh order): friction is not known better, and no
+/// library call is needed every tick.
+#[inline]
+pub(crate) fn sliding(x: f64) -> f64 {
+    let x = x.clamp(-SATURATED, SATURATED);
+    let y = x * x;
+    x * (135_135.0 + y * (17_325.0 + y * (378.0 + y)))
+        / (135_135.0 + y * (62_370.0 + y * (3_150.0 + y * 28.0)))
+}
+
+/// Corrects measured torques.
+#[derive(Debug, Clone)]
+pub(crate) struct TorqueModel {
+    joints: Vec<Joint>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Joint {
+    scale: f64,
+    bias: f64,
+    coulomb: f64,
+    viscous: f64,
+    reversal: Reversal,
+    /// Of Coulomb friction, at the last step.
+    share: f64,
+}
+
+impl TorqueModel {
+    pub fn new(scale: &[f64], bias: &[f64], friction: &Friction) -> Self {
+        let joint = |j: usize| Joint {
+            scale: scale[j],
+            bias: bias[j],
+            coulomb: friction.coulomb[j],
+            viscous: friction.viscous[j],
+            reversal: friction.reversal[j],
+            share: 0.0,
+        };
+        TorqueModel { joints: (0..scale.len()).map(joint).collect() }
+    }
+
+    /// Forgets which way the joints moved.
+    pub fn reset(&mut self) {
+        self.joints.iter_mut().for_each(|joint| joint.share = 0.0);
+    }
+
+    /// Corrects `tau` in place at the velocity `v`, both `(nv,)`, after a step of `dt` (s; zero at the first).
+    #[inline]
+    pub fn correct(&mut self, v: &[f64], dt: f64, tau: &mut [f64]) {
+        for ((joint, v), tau) in self.joints.iter_mut().zip(v).zip(tau) {
+            joint.share = joint.reversal.share(joint.share, *v, dt);
+            let friction = joint.coulomb * joint.share + joint.viscous * v;
+            *tau = joint.scale * *tau - joint.bias - friction;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_quotient_is_the_hyperbolic_tangent() {
+        for k in -2000..=2000 {
+            let x = f64::from(k) * 0.01;
+            assert!((sliding(x) - x.tanh()).abs() < 2e-4, "{x}");
+            assert!(sliding(x).abs() <= 1.0);
+        }
+    }
+
+    #[test]
+    fn a_torque_is_scaled_first() {
+        let reversal = vec![Reversal::Velocity(0.01)];
+        let friction = Friction { coulomb: vec![0.5], viscous: vec![0.1], reversal };
+        let mut tau = [-3.0];
+        TorqueModel::new(&[-1.0], &[0.2], &friction).correct(&[1.0], 1e-3, &mut tau);
+        assert!((tau[0] - (3.0 - 0.2 - 0.5 - 0.1)).abs() < 2e-4);
+    }
+
+    #[test]
+    fn friction_that_turns_with_displacement_stays_at_rest() {
+        let reversal = vec![Reversal::Displacement(0.01)];
+        let friction = Friction { coulomb: vec![2.0], viscous: vec![0.0], reversal };
+        let mut model = TorqueModel::new(&[1.0], &[0.0], &friction);
+        let mut friction_at = |v: f64| {
+            let mut tau = [0.0];
+            model.correct(&[v], 1e-3, &mut tau);
+            -tau[0]
+        };
+        (0..20).for_each(|_| _ = friction_at(1.0));
+        assert_eq!(friction_at(0.0), 2.0);
+        // Half the way back.
+        assert!((0..10).map(|_| friction_at(-1.0)).last().unwrap().abs() < 1e-12);
+        model.reset();
+        let mut tau = [0.0];
+        model.correct(&[0.0], 1e-3, &mut tau);
+        assert_eq!(tau[0], 0.0);
+    }
+}
