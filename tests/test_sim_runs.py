@@ -10,6 +10,7 @@ import pytest
 
 pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install contactsense[sim]")
 
+from mujoco_contact import MujocoContact, hull_parts
 from robots import meshes, packaged, panda
 
 from contactsense.errors import InputError
@@ -18,11 +19,9 @@ from contactsense.sim import (
     ContactQuery,
     ContactRun,
     HandImpedanceController,
-    MujocoContact,
     Pace,
     TorqueError,
     TorqueNoise,
-    hull_parts,
     joint_exploration,
     null_space_exploration,
     perturbed_model,

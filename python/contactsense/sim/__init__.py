@@ -12,7 +12,6 @@ from .geoms import Geom, geoms_of, named_geoms
 from .impedance import HandImpedanceController, ImpedanceController
 from .measurement import Measurement
 from .mjcf import mjcf_string, mjcf_tree
-from .mujoco_contact import ConvexPart, MujocoContact, hull_parts
 from .noise import TorqueNoise, WrenchNoise
 from .obstacles import CubeObstacle, CylinderObstacle, Obstacle, SphereObstacle, obstacle_from_dict
 from .penalty import ContactForce, PenaltyContact, joint_torque
@@ -32,7 +31,6 @@ __all__ = [
     "ContactPath",
     "ContactQuery",
     "ContactRun",
-    "ConvexPart",
     "Coordinates",
     "CubeObstacle",
     "CylinderObstacle",
@@ -42,7 +40,6 @@ __all__ = [
     "HandImpedanceController",
     "ImpedanceController",
     "Measurement",
-    "MujocoContact",
     "Obstacle",
     "Pace",
     "PathPoint",
@@ -60,7 +57,6 @@ __all__ = [
     "TrajectoryPoint",
     "WrenchNoise",
     "geoms_of",
-    "hull_parts",
     "joint_exploration",
     "joint_torque",
     "mjcf_string",
