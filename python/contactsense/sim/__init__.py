@@ -20,7 +20,6 @@ from .quasi_static import record_quasi_static
 from .record import record_run
 from .run import ContactRun
 from .scene import TouchScene, touch_scene
-from .sensors import SensorMount
 from .standing import Sole, StandingController
 from .trajectory import SineTrajectory, TrajectoryPoint
 
@@ -45,7 +44,6 @@ __all__ = [
     "PathPoint",
     "PenaltyContact",
     "Push",
-    "SensorMount",
     "SimulatedRobot",
     "SineTrajectory",
     "Sole",

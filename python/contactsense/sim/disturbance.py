@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -41,12 +41,7 @@ class TorqueError:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values."""
-        return {
-            "percent": self.percent,
-            "newton_metres": self.newton_metres,
-            "bias": self.bias,
-            "seed": self.seed,
-        }
+        return asdict(self)
 
 
 def perturbed_model(

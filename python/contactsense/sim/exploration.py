@@ -12,7 +12,7 @@ import numpy as np
 from contactsense import Robot
 from contactsense.errors import InputError
 
-from ._arrays import FloatArray, positive
+from ._arrays import FloatArray, positive, tangents
 from .contact_path import ContactPath, Pace
 from .contact_plan import HeldLink, plan
 from .scene import TouchScene
@@ -66,12 +66,8 @@ def sliding_exploration(
     positive("travel", travel)
     positive("largest", largest)
     jacobian = robot.jacobian(scene.q, scene.link, scene.point)[:3]
-    helper = np.eye(3)[int(np.argmin(np.abs(scene.normal)))]
-    first = np.cross(scene.normal, helper)
-    first /= np.linalg.norm(first)
-    tangents = np.stack([first, np.cross(scene.normal, first)])
     # Damped, so that directions which the joints hardly move do not ask for large turns.
-    along = tangents @ jacobian
+    along = np.stack(tangents(scene.normal)) @ jacobian
     inverse = along.T @ np.linalg.inv(along @ along.T + 1e-2 * np.trace(along @ along.T) * np.eye(2))
     golden = np.pi * (3.0 - np.sqrt(5.0))
 

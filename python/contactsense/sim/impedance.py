@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from contactsense.errors import InputError
 
-from ._arrays import FloatArray, gains, not_negative, positive
+from ._arrays import FloatArray, gains, not_negative, positive, symmetric
 
 _AXES = pin.LOCAL_WORLD_ALIGNED
 
@@ -62,7 +62,7 @@ class ImpedanceController:
 
     def _feedback(self, q: FloatArray, v: FloatArray, desired: FloatArray, slip: FloatArray) -> FloatArray:
         """(nv,) what springs and dampers ask for, gravity and bias forces included; `slip` is `v - v_d`."""
-        mass = _full(pin.crba(self._model, self._data, q))
+        mass = symmetric(pin.crba(self._model, self._data, q))
         bias = pin.nonLinearEffects(self._model, self._data, q, v)
         torque: FloatArray = self._joint_springs(mass, desired - q, slip) + bias
         return torque
@@ -120,7 +120,7 @@ class HandImpedanceController(ImpedanceController):
         jacobian = pin.getFrameJacobian(model, data, self._frame, _AXES)
         turn = here.rotation @ pin.log3(here.rotation.T @ goal.rotation)
         error = np.concatenate([goal.translation - here.translation, turn])
-        mass = _full(data.M)
+        mass = symmetric(data.M)
         by_mass = np.linalg.solve(mass, jacobian.T)
         # The small term keeps a singular arm, whose hand cannot move some way, from blowing up.
         inertia = np.linalg.inv(jacobian @ by_mass + 1e-4 * np.eye(6))
@@ -131,12 +131,6 @@ class HandImpedanceController(ImpedanceController):
         free -= jacobian.T @ (inertia @ (by_mass.T @ free))
         torque: FloatArray = jacobian.T @ wrench + free + data.nle
         return torque
-
-
-def _full(upper: FloatArray) -> FloatArray:
-    """A symmetric matrix of its upper triangle, which is all that Pinocchio writes."""
-    full: FloatArray = np.triu(upper) + np.triu(upper, 1).T
-    return full
 
 
 def _gains_at(

@@ -95,10 +95,7 @@ def triangles(obstacle: Obstacle, near: FloatArray) -> FloatArray:
     assert isinstance(obstacle, CylinderObstacle)
     axis = obstacle.axis
     middle = obstacle.center + np.clip((near - obstacle.center) @ axis, -0.2, 0.2) * axis
-    first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    first /= np.linalg.norm(first)
-    frame = np.stack([first, np.cross(axis, first), axis], axis=1)
-    return _round(middle, frame, obstacle.radius, min(0.3, obstacle.half_length))
+    return _round(middle, obstacle.frame, obstacle.radius, min(0.3, obstacle.half_length))
 
 
 def _round(center: FloatArray, frame: FloatArray, radius: float, half: float) -> FloatArray:
