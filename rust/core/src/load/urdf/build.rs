@@ -132,7 +132,7 @@ fn joint(urdf: &urdf_rs::Joint, parent: BodyIndex, kind: JointKind, placement: P
     let limited = |value: f64| (value.abs() < UNLIMITED).then_some(value);
     let position = |value: f64| limited(value).filter(|_| kind != JointKind::Continuous);
     let (lower, upper) = (position(urdf.limit.lower), position(urdf.limit.upper));
-    let effort = limited(urdf.limit.effort).filter(|_| has_limit(urdf));
+    let effort = limited(urdf.limit.effort);
     JointDescription {
         parent,
         kind,
@@ -142,12 +142,6 @@ fn joint(urdf: &urdf_rs::Joint, parent: BodyIndex, kind: JointKind, placement: P
         effort,
         ..none
     }
-}
-
-/// Whether it has a `<limit>`: `urdf-rs` gives zeros where a continuous joint has none.
-fn has_limit(joint: &urdf_rs::Joint) -> bool {
-    let limit = &joint.limit;
-    [limit.lower, limit.upper, limit.effort, limit.velocity] != [0.0; 4]
 }
 
 /// Adds a link's inertia to a body's; `placement` is the link's in the joint's frame.
