@@ -239,7 +239,7 @@ def test_an_interrupt_is_a_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.
     [
         ("vorndamme2017", "isolating", "--json"),
         ("vorndamme2017", "isolating", "One contact"),
-        ("vorndamme2017", "hits over time", "A hit of 20 ms"),
+        ("vorndamme2017", "impacts over time", "An impact of 20 ms"),
         ("bimbo2019", "trials", "--json"),
         ("bimbo2019", "trials", "estimate says of itself"),
     ],

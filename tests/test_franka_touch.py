@@ -124,7 +124,7 @@ def test_bad_data_is_refused(tmp_path: Path, robot: cs.Robot, capsys: pytest.Cap
         "empty": (rows[:0], COLUMNS, "has 0 rows"),
         "time": (rows[::-1], COLUMNS, "column time: must not decrease"),
         "label": (np.column_stack([rows[:, :-1], rows[:, -1] / 2]), COLUMNS, "column label: must be 0 or 1"),
-        "untouched": (np.column_stack([rows[:, :-1], 0 * rows[:, -1]]), COLUMNS, "no touch in this log"),
+        "untouched": (np.column_stack([rows[:, :-1], 0 * rows[:, -1]]), COLUMNS, "no contact in this log"),
     }
     for name, (table, columns, message) in bad.items():
         folder = tmp_path / name
