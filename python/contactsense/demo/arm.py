@@ -66,6 +66,7 @@ def choose(noise: TorqueNoise, largest_torque: FloatArray, gain: float | None = 
     Noise in percent counts at the largest torque of the motion.
 
     Args:
+        noise: of the measured torques.
         largest_torque: (nv,) that the planned motion needs [Nm].
         gain: in place of the chosen one [1/s].
     """

@@ -44,6 +44,7 @@ class HitResult:
 
     @property
     def link_right(self) -> bool:
+        """Whether the estimated link is the contact link."""
         return self.named == self.link
 
 
@@ -103,14 +104,17 @@ class DemoResult:
 
     @property
     def detected(self) -> int:
+        """How many contacts were detected."""
         return sum(hit.delay is not None for hit in self.hits)
 
     @property
     def links_right(self) -> int:
+        """Of how many contacts the link is correct."""
         return sum(hit.link_right for hit in self.hits)
 
     @property
     def located(self) -> tuple[HitResult, ...]:
+        """The contacts with a located point."""
         return tuple(hit for hit in self.hits if hit.located)
 
 

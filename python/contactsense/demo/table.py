@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 from rich.box import SIMPLE_HEAD
@@ -37,25 +37,19 @@ _NOTES = (
 )
 
 
-class LiveTable:
-    """Takes the progress of a run and shows it."""
-
-    def __init__(self, live: Live) -> None:
-        self._live = live
-
-    def __call__(self, progress: Progress) -> None:
-        sensed = (
-            Text(f"contact on {progress.sensed}", style="bold yellow") if progress.sensed else Text("free")
-        )
-        status = Text(f"{progress.time:4.1f} of {progress.end:.0f} s   ").append_text(sensed)
-        self._live.update(Group(hit_table(progress.hits, progress.planned), status))
-
-
 @contextmanager
-def live_table(console: Console) -> Iterator[LiveTable]:
-    """Shows a table that is gone at the end; on a terminal only."""
+def live_table(console: Console) -> Iterator[Callable[[Progress], None]]:
+    """Shows a table of the progress that it is told; it is gone at the end; on a terminal only."""
     with Live(console=console, transient=True, refresh_per_second=12) as live:
-        yield LiveTable(live)
+
+        def show(progress: Progress) -> None:
+            state = Text("free")
+            if progress.sensed:
+                state = Text(f"contact on {progress.sensed}", style="bold yellow")
+            status = Text(f"{progress.time:4.1f} of {progress.end:.0f} s   ").append_text(state)
+            live.update(Group(hit_table(progress.hits, progress.planned), status))
+
+        yield show
 
 
 def hit_table(hits: Sequence[HitResult], rows: int = 0) -> Table:

@@ -156,10 +156,10 @@ def _at_center(
 
 
 def inside(surface: Surface, point: FloatArray) -> bool:
-    """Whether `point` (3,), link frame, is in the body: a ray from it leaves as often as it enters, and once
-    more.
+    """Whether `point` (3,) [m], link frame, is in the body.
 
-    On a surface that is not closed, the side of the nearest triangle decides.
+    A ray from it then meets the surface an odd number of times. On a surface that is not closed, the side of
+    the nearest triangle decides.
     """
     if not surface.watertight:
         closest = surface.closest_points(point[None])

@@ -55,6 +55,7 @@ def perturbed_model(
     """A copy of `model` with other masses: the true robot, where a nominal model is all that is known.
 
     Args:
+        model: what is known of the robot; it is left as it is.
         mass: standard deviation of each body's mass, as a share of it (0.05: 5 %); rotational inertia
             follows.
         centre: of each coordinate of its centre of mass [m].

@@ -27,7 +27,7 @@ class _Rounded:
         raise NotImplementedError
 
     def project(self, points: FloatArray) -> FloatArray:
-        """(n, 3) nearest points of the core."""
+        """(n, 3) nearest points of the core to `points` (n, 3) [m]."""
         raise NotImplementedError
 
     def signed_distance(self, points: ArrayLike) -> FloatArray:
@@ -59,9 +59,11 @@ class SphereObstacle(_Rounded):
 
     @property
     def rounding(self) -> float:
+        """The radius [m]."""
         return self.radius
 
     def project(self, points: FloatArray) -> FloatArray:
+        """(n, 3) the centre [m], whatever the `points` (n, 3) are."""
         return np.broadcast_to(self.center, points.shape)
 
 
@@ -99,15 +101,17 @@ class CubeObstacle(_Rounded):
 
     @property
     def rounding(self) -> float:
+        """The radius of edges and corners [m]."""
         return self.edge_radius
 
     @property
     def core(self) -> FloatArray:
-        """(3,) half extents of the box within the rounding."""
+        """(3,) half extents of the box within the rounding [m]."""
         inner: FloatArray = self.half_extents - self.edge_radius
         return inner
 
     def project(self, points: FloatArray) -> FloatArray:
+        """(n, 3) points of the box within the rounding [m], nearest to `points` (n, 3)."""
         local = (points - self.center) @ self.rotation
         nearest: FloatArray = self.center + np.clip(local, -self.core, self.core) @ self.rotation.T
         return nearest
@@ -133,6 +137,7 @@ class CylinderObstacle(_Rounded):
 
     @property
     def rounding(self) -> float:
+        """The radius [m]."""
         return self.radius
 
     @property
@@ -141,6 +146,7 @@ class CylinderObstacle(_Rounded):
         return np.stack([*tangents(self.axis), self.axis], axis=1)
 
     def project(self, points: FloatArray) -> FloatArray:
+        """(n, 3) points of the pole's segment [m], nearest to `points` (n, 3)."""
         along = np.clip((points - self.center) @ self.axis, -self.half_length, self.half_length)
         nearest: FloatArray = self.center + along[:, None] * self.axis
         return nearest

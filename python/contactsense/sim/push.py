@@ -72,7 +72,11 @@ def random_push(
     """A push at a random point of the link's surface, inward, fixed to the link.
 
     Args:
+        link: the link that is pushed.
         surface: of `link`, in its frame.
+        peak_force: [N].
+        start: [s].
+        duration: [s].
         cone_angle: largest angle [rad] between force and inward normal, below pi/2; directions are uniform in
             the cone. The arctangent of the friction coefficient makes it the friction cone.
         seed: same seed, same push.
