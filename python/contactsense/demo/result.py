@@ -132,14 +132,7 @@ class Progress:
 
 def as_data(result: DemoResult) -> dict[str, Any]:
     """Plain numbers and texts, for JSON; None where there is no estimate."""
-    data = _common_data(result)
-    if result.standing is not None:
-        data["standing"] = _standing_data(result, result.standing)
-    return data
-
-
-def _common_data(result: DemoResult) -> dict[str, Any]:
-    return {
+    data: dict[str, Any] = {
         "robot": result.robot_name,
         "seed": result.seed,
         "noise": {"percent": result.noise.percent, "newton_metres": result.noise.newton_metres},
@@ -166,6 +159,9 @@ def _common_data(result: DemoResult) -> dict[str, Any]:
             "max_us": 1e6 * result.timing.max,
         },
     }
+    if result.standing is not None:
+        data["standing"] = _standing_data(result, result.standing)
+    return data
 
 
 def _standing_data(result: DemoResult, standing: Standing) -> dict[str, Any]:

@@ -121,13 +121,6 @@ def _box(cube: CubeObstacle) -> FloatArray:
             corners = np.zeros((2, 2, 3))
             corners[..., axis] = sign
             corners[..., u] = [[-1, -1], [1, 1]]
-            corners[..., v] = [[-sign, sign], [-sign, sign]]
+            corners[..., v] = [[sign, -sign], [sign, -sign]]
             faces.append(_quads(cube.center + (corners * cube.half_extents) @ cube.rotation.T))
-    return _outward(np.concatenate(faces), cube.center)
-
-
-def _outward(faces: FloatArray, center: FloatArray) -> FloatArray:
-    normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
-    inward = np.einsum("ij,ij->i", normals, faces.mean(axis=1) - center) < 0.0
-    faces[inward] = faces[inward][:, ::-1]
-    return faces
+    return np.concatenate(faces)
