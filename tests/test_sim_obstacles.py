@@ -158,7 +158,7 @@ def test_distances_agree_with_mujoco_on_convex_parts() -> None:
         for obstacle in _near(robot, link, q, rng):
             shift = 0.02 * ContactQuery(robot, obstacle).at(q, link).normal
             moved = obstacle_from_dict(obstacle.to_dict() | {"center": list(obstacle.center + shift)})
-            gap = ContactQuery(robot, moved).clearance(q, link)
+            gap = -ContactQuery(robot, moved).at(q, link).penetration
             if gap < -0.9 * moved.rounding:
                 continue  # a dent in the link: the core is reached
             judged += 1

@@ -47,7 +47,7 @@ def test_scenes_touch_one_link_and_are_felt(which, kind: str) -> None:
             query = ContactQuery(robot, scene.obstacle, links=robot.link_names)
             (found,) = query.touching(scene.q)
             assert found.link == link
-            gaps = [query.clearance(scene.q, other) for other in robot.link_names if other != link]
+            gaps = [-query.at(scene.q, other).penetration for other in robot.link_names if other != link]
             assert min(gaps) > 0.004
             assert 4.99 < np.linalg.norm(scene.force) < 40.01
             assert scene.force @ scene.normal < 0

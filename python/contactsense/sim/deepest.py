@@ -66,10 +66,6 @@ class ContactQuery:
         found = [found for link in self.links if (found := self.near(q, link, 0.0)) is not None]
         return sorted(found, key=lambda contact: -contact.penetration)
 
-    def clearance(self, q: FloatArray, link: str) -> float:
-        """Gap between `link` and the obstacle [m], negative in contact."""
-        return -self.at(q, link).penetration
-
     def near(self, q: FloatArray, link: str, margin: float) -> DeepestPoint | None:
         """The deepest point of `link`, or None where the gap exceeds `margin` [m]."""
         pose = self.robot.link_pose(q, link)

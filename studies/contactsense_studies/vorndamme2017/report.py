@@ -116,22 +116,10 @@ def _scores(title: str, rows: Iterable[Row]) -> Table:
 
 
 def _cells(figures: Score) -> list[str]:
-    return [
-        str(figures.scenes),
-        *(
-            percent(value)
-            for value in (
-                figures.exact,
-                figures.near,
-                figures.fair,
-                figures.among_candidates,
-                figures.links_right,
-                figures.located,
-                figures.wrong,
-            )
-        ),
-        f"{figures.claim_error:.0e}" if figures.located or figures.wrong else "-",
-    ]
+    points = (figures.exact, figures.near, figures.fair, figures.among_candidates)
+    claims = (figures.links_right, figures.located, figures.wrong)
+    worst = f"{figures.claim_error:.0e}" if figures.located or figures.wrong else "-"
+    return [str(figures.scenes), *map(percent, (*points, *claims)), worst]
 
 
 def series_table(study: Study) -> Table:
