@@ -162,7 +162,7 @@ def _refused_at_once(arguments: list[str], monkeypatch: pytest.MonkeyPatch) -> i
 
     for module in (
         "contactsense.demo.command",
-        "contactsense_studies.franka_touch",
+        "contactsense_studies.franka_touch.study",
         "contactsense_studies.vorndamme2017.study",
         "contactsense_studies.bimbo2019.study",
     ):

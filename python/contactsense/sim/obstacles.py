@@ -41,7 +41,7 @@ class _Rounded:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values for `obstacle_from_dict`."""
-        kind = next(kind for kind, shape in _KINDS.items() if type(self) is shape)
+        kind = next(kind for kind, shape in _KINDS.items() if isinstance(self, shape))
         plain = {key: np.asarray(value).tolist() for key, value in vars(self).items()}
         return {"kind": kind} | plain
 
