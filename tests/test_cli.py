@@ -162,7 +162,7 @@ def _refused_at_once(arguments: list[str], monkeypatch: pytest.MonkeyPatch) -> i
 
     for module in (
         "contactsense.demo.command",
-        "contactsense_studies.franka_touch",
+        "contactsense_studies.franka_touch.study",
         "contactsense_studies.vorndamme2017.study",
         "contactsense_studies.bimbo2019.study",
     ):
@@ -239,7 +239,7 @@ def test_an_interrupt_is_a_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.
     [
         ("vorndamme2017", "isolating", "--json"),
         ("vorndamme2017", "isolating", "One contact"),
-        ("vorndamme2017", "hits over time", "A hit of 20 ms"),
+        ("vorndamme2017", "impacts over time", "An impact of 20 ms"),
         ("bimbo2019", "trials", "--json"),
         ("bimbo2019", "trials", "estimate says of itself"),
     ],

@@ -152,9 +152,11 @@ def test_table_without_a_terminal(tmp_path: Path, capsys: pytest.CaptureFixture[
     picture = tmp_path / "demo.png"
     assert run_command(["demo", "--seed", "1", "--out", str(picture)]) == 0
     told = capsys.readouterr().out
-    assert told.count("delay") == 1
+    assert told.count("true link") == 1
     assert "\x1b" not in told
-    assert "9 of 9 hits detected" in told
+    assert "9 of 9 contacts detected" in told
+    # Units in brackets are text, not markup.
+    assert told.count("[mm]") == 2
     assert "Picture:" in told
     assert picture.exists()
 

@@ -206,6 +206,6 @@ def test_table_without_a_terminal(tmp_path: Path, capsys: pytest.CaptureFixture[
     told = " ".join(capsys.readouterr().out.split())
     assert "atlas stands, seed 2" in told
     assert "sensor noise 1 N and 0.05 Nm" in told
-    assert "5 of 5 hits detected" in told
+    assert "5 of 5 contacts detected" in told
     assert "It kept standing" in told
     assert "Wanted contacts: l_foot, r_foot" in told

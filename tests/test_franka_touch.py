@@ -14,15 +14,19 @@ from robots import SHARED
 import contactsense as cs
 from contactsense._extras import MissingExtraError
 from contactsense.cli.app import run as run_cli
-from contactsense_studies import franka_touch as study
-from contactsense_studies.franka_touch.logs import COLUMNS, log_of_table
+from contactsense_studies.franka_touch import study
+from contactsense_studies.franka_touch.logs import COLUMNS, log_of_table, read_logs
+from contactsense_studies.franka_touch.replay import Replay, replay
+from contactsense_studies.franka_touch.settings import MEASURED, VENDOR, Settings
+from contactsense_studies.franka_touch.summary import summarise
 from contactsense_studies.franka_touch.touches import EARLY, judge, link_number
+from contactsense_studies.franka_touch.tuning import choose_settings
 
 REAL = SHARED / "real" / "franka_touch"
 DT = 0.005
 Q = np.array([0.1, 0.6, -0.2, -1.4, 0.3, 1.1, 0.5])
 NOISE = 0.02  # [Nm]
-SETTINGS = study.Settings("measured", (NOISE,) * 7, 30.0, 10.0, 3.0, 0.02, 0.5)
+SETTINGS = Settings("measured", (NOISE,) * 7, 30.0, 10.0, 3.0, 0.02, 0.5)
 STARTS = (2.0, 3.5, 5.0)
 
 
@@ -68,9 +72,9 @@ def write(
 
 def test_every_touch_of_a_made_up_log(robot: cs.Robot) -> None:
     log = log_of_table("d5", made_up(robot), "here")
-    told = study.replay(robot, log, SETTINGS)
+    told = replay(robot, log, SETTINGS)
     result = judge(robot, log, told, SETTINGS, tuning=False)
-    figures = study.summarise([result])
+    figures = summarise([result])
     assert (figures.detected, figures.touches, figures.false_alarms) == (3, 3, 0)
     assert all(touch.delay is not None and 0.0 < touch.delay < 0.1 for touch in result.touches)
     # The first touch ends with a torque in the last joint; the bias has taken it in before the next.
@@ -84,7 +88,7 @@ def test_a_push_that_lasts_is_not_taken_for_a_bias(robot: cs.Robot) -> None:
     peak = int((STARTS[0] + 0.25) / DT)
     rows[peak:, 15:22] = rows[peak, 15:22]
     rows[peak:, -1] = 1
-    told = study.replay(robot, log_of_table("d5", rows, "here"), SETTINGS)
+    told = replay(robot, log_of_table("d5", rows, "here"), SETTINGS)
     assert told.collision[peak:].all()
 
 
@@ -93,14 +97,14 @@ def test_onsets_belong_to_touches_by_the_stated_rule(robot: cs.Robot) -> None:
     onsets = (1.0, STARTS[0] - EARLY + 0.01, STARTS[1] + 0.51, STARTS[2] + 0.1)
     onset = np.zeros(len(log.time), dtype=bool)
     onset[[round(time / DT) for time in onsets]] = True
-    told = study.Replay(np.zeros_like(onset), onset, np.zeros((len(onset), 7)))
+    told = Replay(np.zeros_like(onset), onset, np.zeros((len(onset), 7)))
     result = judge(robot, log, told, SETTINGS, tuning=False)
     delays = [touch.delay for touch in result.touches]
     assert delays[0] == pytest.approx(-EARLY + 0.01)
     assert delays[1] is None
     assert delays[2] == pytest.approx(0.1)
     assert result.false_onsets == pytest.approx((1.0, STARTS[1] + 0.51))
-    figures = study.summarise([result])
+    figures = summarise([result])
     assert (figures.detected, figures.early, figures.false_alarms) == (2, 1, 2)
     assert figures.exact == 0.0
     assert result.free_time == pytest.approx(log.time[-1] - 3 * (0.5 + EARLY), abs=6 * DT)
@@ -108,7 +112,7 @@ def test_onsets_belong_to_touches_by_the_stated_rule(robot: cs.Robot) -> None:
 
 def test_vendor_torque_goes_through_unchanged(robot: cs.Robot) -> None:
     log = log_of_table("d5", made_up(robot, kept=0.0), "here")
-    told = study.replay(robot, log, replace(SETTINGS, source="vendor", observer_gain=1e5))
+    told = replay(robot, log, replace(SETTINGS, source="vendor", observer_gain=1e5))
     strongest = int((STARTS[1] + 0.25) / DT)
     expected = log.vendor[strongest - 1 : strongest + 1].mean(axis=0) - 0.4
     # The bias took in a little of the push before it was felt.
@@ -124,7 +128,7 @@ def test_bad_data_is_refused(tmp_path: Path, robot: cs.Robot, capsys: pytest.Cap
         "empty": (rows[:0], COLUMNS, "has 0 rows"),
         "time": (rows[::-1], COLUMNS, "column time: must not decrease"),
         "label": (np.column_stack([rows[:, :-1], rows[:, -1] / 2]), COLUMNS, "column label: must be 0 or 1"),
-        "untouched": (np.column_stack([rows[:, :-1], 0 * rows[:, -1]]), COLUMNS, "no touch in this log"),
+        "untouched": (np.column_stack([rows[:, :-1], 0 * rows[:, -1]]), COLUMNS, "no contact in this log"),
     }
     for name, (table, columns, message) in bad.items():
         folder = tmp_path / name
@@ -133,16 +137,16 @@ def test_bad_data_is_refused(tmp_path: Path, robot: cs.Robot, capsys: pytest.Cap
         assert run_cli(["study", "franka_touch", "--data", str(folder)]) == 2
         assert message in capsys.readouterr().err
     with pytest.raises(cs.InputError, match="no logs in"):
-        study.read_logs(tmp_path)
+        read_logs(tmp_path)
     (tmp_path / "a1.csv.gz").write_bytes(b"no archive")
     with pytest.raises(cs.InputError, match=r"a1\.csv\.gz' cannot be read"):
-        study.read_logs(tmp_path)
+        read_logs(tmp_path)
     (tmp_path / "a1.csv.gz").unlink()
     (tmp_path / "a1.csv").write_text(",".join(COLUMNS) + "\n" + ",".join(["x"] * 30) + "\n")
     with pytest.raises(cs.InputError, match=r"a1\.csv' cannot be read"):
-        study.read_logs(tmp_path)
+        read_logs(tmp_path)
     with pytest.raises(cs.InputError, match="chosen on a4 and f2"):
-        study.choose_settings(robot, [], "measured")
+        choose_settings(robot, [], "measured")
 
 
 @pytest.fixture(scope="module")
@@ -177,9 +181,9 @@ def test_real_links_are_named(real: study.Study) -> None:
 
 @pytest.mark.shared
 def test_stored_settings_are_those_chosen(real: study.Study) -> None:
-    robot = study.study.panda()
-    assert study.choose_settings(robot, real.logs, "measured") == study.MEASURED
-    assert study.choose_settings(robot, real.logs, "vendor") == study.VENDOR
+    robot = study.panda()
+    assert choose_settings(robot, real.logs, "measured") == MEASURED
+    assert choose_settings(robot, real.logs, "vendor") == VENDOR
 
 
 @pytest.mark.shared

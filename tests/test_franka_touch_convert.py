@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import contactsense as cs
-from contactsense_studies.franka_touch import read_logs
 from contactsense_studies.franka_touch.convert import FILE, LABELLED, convert, main
+from contactsense_studies.franka_touch.logs import read_logs
 
 # As the public files are laid out: torques first, commanded values between, an index before all.
 SIGNALS = ("tau_J", "tau_J_d", "tau_ext", "q", "q_d", "dq", "dq_d", "e", "de", "etau_J")

@@ -8,17 +8,16 @@ import pytest
 
 pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install contactsense[sim]")
 
+from mujoco_contact import MujocoContact, hull_parts
 from robots import packaged, panda
 
 from contactsense.errors import InputError
 from contactsense.sim import (
     HandImpedanceController,
     ImpedanceController,
-    MujocoContact,
     PenaltyContact,
     SimulatedRobot,
     SphereObstacle,
-    hull_parts,
     joint_torque,
     named_geoms,
     touch_scene,

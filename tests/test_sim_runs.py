@@ -10,6 +10,7 @@ import pytest
 
 pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install contactsense[sim]")
 
+from mujoco_contact import MujocoContact, hull_parts
 from robots import meshes, packaged, panda
 
 from contactsense.errors import InputError
@@ -18,11 +19,9 @@ from contactsense.sim import (
     ContactQuery,
     ContactRun,
     HandImpedanceController,
-    MujocoContact,
     Pace,
     TorqueError,
     TorqueNoise,
-    hull_parts,
     joint_exploration,
     null_space_exploration,
     perturbed_model,
@@ -48,7 +47,7 @@ def test_scenes_touch_one_link_and_are_felt(which, kind: str) -> None:
             query = ContactQuery(robot, scene.obstacle, links=robot.link_names)
             (found,) = query.touching(scene.q)
             assert found.link == link
-            gaps = [query.clearance(scene.q, other) for other in robot.link_names if other != link]
+            gaps = [-query.at(scene.q, other).penetration for other in robot.link_names if other != link]
             assert min(gaps) > 0.004
             assert 4.99 < np.linalg.norm(scene.force) < 40.01
             assert scene.force @ scene.normal < 0

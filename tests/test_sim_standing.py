@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from xml.etree import ElementTree as ET
 
 import numpy as np
@@ -13,7 +12,7 @@ pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install c
 
 import mujoco
 
-from contactsense import Robot
+from contactsense import ForceTorqueSensor, Robot
 from contactsense.errors import InputError, ModelError
 from contactsense.sim import (
     FLOOR_TYPE,
@@ -26,21 +25,10 @@ from contactsense.sim import (
     mjcf_tree,
     named_geoms,
 )
-from contactsense.sim.atlas import FEET, SENSOR_LINKS, controller, posture
+from contactsense.sim.atlas import FEET, SENSOR_LINKS, SENSORS, controller, posture
 
 # What turns more slowly has turned less than the posture's tolerance of 2 mrad after 10 s [rad/s, m/s].
 STILL = 2e-4
-
-
-@dataclass(frozen=True)
-class Sensor:
-    name: str
-    link: str
-    pose: np.ndarray | None = None
-    convention: str = "load"
-
-
-SENSORS = tuple(Sensor(link, link) for link in SENSOR_LINKS)
 
 
 def _turned() -> np.ndarray:
@@ -65,7 +53,11 @@ def _load(model: pin.Model, link: str, q: np.ndarray, v: np.ndarray, a: np.ndarr
 def test_loads_in_free_flight_are_those_of_newton_and_euler() -> None:
     model = Robot.named("atlas").model
     pose = _turned()
-    sensors = (*SENSORS, Sensor("turned", "r_ufarm", pose), Sensor("held", "l_hand", None, "support"))
+    sensors = (
+        *SENSORS,
+        ForceTorqueSensor("turned", "r_ufarm", pose=pose),
+        ForceTorqueSensor("held", "l_hand", convention="support"),
+    )
     robot = SimulatedRobot(model, sensors=sensors)
     rng = np.random.default_rng(4)
     pin.seed(4)
@@ -199,11 +191,11 @@ def test_links_do_not_collide_with_each_other_and_without_a_floor_it_falls() -> 
 def test_wrong_arguments_are_named() -> None:
     model = Robot.named("atlas").model
     with pytest.raises(InputError, match=r"sensors: 'a' sits before link 'pelvis'.*moving joint"):
-        SimulatedRobot(model, sensors=[Sensor("a", "pelvis")])
+        SimulatedRobot(model, sensors=[ForceTorqueSensor("a", "pelvis")])
     with pytest.raises(InputError, match=r"sensors: 'a' .*'tail', which does not exist"):
-        SimulatedRobot(model, sensors=[Sensor("a", "tail")])
+        SimulatedRobot(model, sensors=[ForceTorqueSensor("a", "tail")])
     with pytest.raises(InputError, match="sensors: names must differ"):
-        SimulatedRobot(model, sensors=[Sensor("a", "l_hand"), Sensor("a", "r_hand")])
+        SimulatedRobot(model, sensors=[ForceTorqueSensor("a", "l_hand"), ForceTorqueSensor("a", "r_hand")])
     plain = ET.tostring(mjcf_tree(model), encoding="unicode")
     with pytest.raises(InputError, match="sensors: the MuJoCo model has no sensor 'l_hand:force'"):
         SimulatedRobot(model, mjcf=plain, sensors=SENSORS)

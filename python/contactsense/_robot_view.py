@@ -40,6 +40,9 @@ def body(
     """The robot as the eye sees it, lit from the upper right.
 
     Args:
+        robot: its surfaces are drawn.
+        q: configuration, (nq,).
+        view: where the eye is.
         others: things beside it, as triangles `(n, 3, 3)`, counterclockwise from outside, and their colours.
         colours: of links that differ from the rest.
     """

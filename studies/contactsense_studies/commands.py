@@ -8,12 +8,11 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from contactsense import Robot
 from contactsense._extras import require
 from contactsense._pictures import picture_file
-from contactsense.robot import DESCRIPTIONS
 
 from .bimbo2019.options import Options as BimboOptions
+from .example_robots import robot_of
 from .harness import AsJson, add_study, print_json
 from .vorndamme2017.options import Options as VorndammeOptions
 
@@ -42,8 +41,7 @@ def franka_touch(
 ) -> None:
     """Contacts of a real Franka arm: whether, how soon and on which link they are detected."""
     require("plot", "matplotlib")
-    from . import franka_touch as study
-    from .franka_touch import plot, report
+    from .franka_touch import plot, report, study
 
     picture = picture_file("png", png)
     result = study.run(data, tune=tune, plot_log=plot_log)
@@ -71,10 +69,7 @@ def single_contacts(
     """Single contacts with ideal measurements: which are located, how accurately, and why others are not."""
     from . import single_contacts as study
 
-    if robot in DESCRIPTIONS:
-        subject = Robot.named(robot)
-    else:
-        subject = Robot.from_urdf(robot, package_dirs=package_dir or (), floating_base=floating_base)
+    subject = robot_of(robot, package_dir or (), floating_base=floating_base)
     results = study.run(subject, points, seed)
     if as_json:
         print_json(study.as_data(results))

@@ -1,15 +1,24 @@
-"""Robots of the package example-robot-data, as the studies use them."""
+"""Robots of the studies: packaged ones, those of URDF files, and those of the package example-robot-data."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
 from contactsense import Robot
 from contactsense._extras import MissingExtraError
+from contactsense.robot import DESCRIPTIONS
 
 PACKAGE = "example-robot-data"
 PANDA = "example-robot-data/robots/panda_description/urdf/panda.urdf"
+
+
+def robot_of(name: str, package_dirs: Iterable[str | Path] = (), *, floating_base: bool = False) -> Robot:
+    """A packaged robot by its name, or that of a URDF file, whose base may move freely."""
+    if name in DESCRIPTIONS:
+        return Robot.named(name)
+    return Robot.from_urdf(name, package_dirs=package_dirs, floating_base=floating_base)
 
 
 def share_folder() -> Path:

@@ -30,8 +30,10 @@ def run_trials(
 
     Args:
         function: known by name, and depends on its item alone.
+        items: what it is called with.
         stage: what `progress` is told after each item, with the weights of those done and of all.
         processes: default one a core; the results do not depend on it.
+        progress: called after each item.
         weight: how much of the work an item is.
     """
     total, finished = sum(map(weight, items)), 0

@@ -100,11 +100,17 @@ def as_data(results: list[LinkResult]) -> list[dict[str, object]]:
     ]
 
 
+def in_words(outcome: str) -> str:
+    """An outcome as tables state it."""
+    words = outcome.replace("not felt", "not detected")
+    return words.replace("own joint silent", "own joint below threshold")
+
+
 def table(results: list[LinkResult]) -> Table:
     """The results as a table of counts, one column an outcome."""
     total: Counter[str] = sum((result.outcomes for result in results), Counter())
     kinds = [kind for kind, _ in total.most_common()]
-    figures = (*kinds, "point error [m]", "force error")
+    figures = (*map(in_words, kinds), "point error [m]", "force error")
     counted = sheet("Single contacts, ideal measurements", ("link",), figures)
     for result in results:
         counts = [str(result.outcomes[kind] or "") for kind in kinds]

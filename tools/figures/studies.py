@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from typing import Any
 
+from contactsense_studies.single_contacts import in_words
+
 from .entry import Raw
 from .markdown import percent, table
 
@@ -67,7 +69,7 @@ def single_contacts_table(result: Any) -> str:
         worst = f"{figures['point_error_m']:.0e} m"
         for outcome, count in figures["outcomes"].items():
             exact = outcome == "located" or outcome.startswith("exact")
-            rows.append([robot, outcome, str(count), worst if exact else ""])
+            rows.append([robot, in_words(outcome), str(count), worst if exact else ""])
     return table(("robot", "outcome", "contacts", "worst error of the points"), rows)
 
 

@@ -37,6 +37,7 @@ def _write(name: str, seed: object, rows: dict[str, Any]) -> None:
 
 
 def main() -> None:
+    """Writes all files."""
     DATA.mkdir(exist_ok=True)
     meshed = meshed_arm.write(DESCRIPTIONS / "iiwa14.urdf", DATA)
     arm = GoldenRobot.read(DESCRIPTIONS / "iiwa14.urdf", floating_base=False)

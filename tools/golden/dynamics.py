@@ -46,8 +46,10 @@ def make(robot: GoldenRobot, count: int, seed: int) -> dict[str, Any]:
 
 
 def observer(robot: GoldenRobot, seed: int) -> dict[str, Any]:
-    """An arm that swings under a motor torque and, from the 20th tick on, an external one; what a first-order
-    filter with `gain` makes of the external torque."""
+    """What a first-order filter with `gain` makes of an external torque.
+
+    The arm swings under a motor torque and, from the 20th tick on, the external one.
+    """
     rng = np.random.default_rng(seed)
     model, data = robot.model, robot.data
     q, v = robot.configuration(rng), np.round(rng.uniform(-0.5, 0.5, model.nv), 4)

@@ -21,6 +21,8 @@ GRAZE = 2e-3
 
 @dataclass(frozen=True)
 class Link:
+    """A link with a surface."""
+
     name: str
     joint: int  # Pinocchio's index; 0 is the world
     frame: int
@@ -39,6 +41,7 @@ class GoldenRobot:
 
     @classmethod
     def read(cls, path: Path, *, floating_base: bool) -> GoldenRobot:
+        """From a URDF; its meshes are beside it."""
         text = path.read_text(encoding="utf-8")
         root = (pin.JointModelFreeFlyer(),) if floating_base else ()
         tree = ElementTree.fromstring(text)
@@ -76,6 +79,7 @@ class GoldenRobot:
         pin.framesForwardKinematics(self.model, self.data, q)
 
     def pose(self, link: Link) -> pin.SE3:
+        """Of a link in the world, as placed last."""
         return self.data.oMf[link.frame]
 
     def jacobian(self, link: Link, point: np.ndarray) -> np.ndarray:

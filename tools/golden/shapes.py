@@ -31,6 +31,7 @@ class Shape:
 
     @classmethod
     def read(cls, collision: ElementTree.Element, folder: Path) -> Shape:
+        """From a `<collision>` element; mesh files are in `folder`."""
         origin = collision.find("origin")
         attributes = origin.attrib if origin is not None else {}
         pose = np.eye(4)

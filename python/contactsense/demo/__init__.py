@@ -1,6 +1,6 @@
 """Contacts on a simulated robot: what is estimated, against the truth.
 
-"iiwa14" is an arm that is hit while it moves fast; "atlas" a humanoid that is pushed while it stands.
+"iiwa14" is an arm that moves fast, with short contacts; "atlas" is a humanoid that stands and is pushed.
 
 `run` simulates and scores, `save_picture` draws, `as_data` gives what `--json` prints.
 """
@@ -33,15 +33,15 @@ def run(
     gain: float | None = None,
     on_progress: Callable[[Progress], None] | None = None,
 ) -> DemoResult:
-    """Simulates the robot, hits it at random, and scores what a `ContactMonitor` says.
+    """Simulates the robot with random contacts, and compares what a `ContactMonitor` reports with the truth.
 
     Args:
         robot: one of `ROBOTS`.
-        seed: of the motion, the hits and the noise; same seed, same result.
+        seed: of the motion, the contacts and the noise; same seed, same result.
         noise: standard deviation of every measured torque, new each tick: percent of the torque, and [Nm].
         sensor_noise: standard deviation of every measured wrench of "atlas", new each tick: [N] and [Nm].
         gain: of the observer [1/s]; by default from the noise, see `settings`.
-        on_progress: called every few ticks and after every hit.
+        on_progress: called every few ticks and after every contact.
 
     Raises:
         InputError: an argument cannot be used; names it.

@@ -66,6 +66,7 @@ def choose(noise: TorqueNoise, largest_torque: FloatArray, gain: float | None = 
     Noise in percent counts at the largest torque of the motion.
 
     Args:
+        noise: of the measured torques.
         largest_torque: (nv,) that the planned motion needs [Nm].
         gain: in place of the chosen one [1/s].
     """
@@ -77,11 +78,9 @@ def choose(noise: TorqueNoise, largest_torque: FloatArray, gain: float | None = 
 def plan_motion(robot: Robot, seed: int) -> SineTrajectory:
     """A motion about the working posture, at rest at first, fast within a second."""
     generator, model = np.random.default_rng([seed, 0]), robot.model
-    return SineTrajectory(
-        model.lowerPositionLimit,
-        model.upperPositionLimit,
+    return SineTrajectory.for_model(
+        model,
         peak_speed=PEAK_SPEED,
-        speed_limits=model.velocityLimit,
         centre=np.array(_POSTURE) + generator.uniform(-_SPREAD, _SPREAD, model.nv),
         ramp=1.0,
         horizon=END,

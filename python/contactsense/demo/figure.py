@@ -61,7 +61,7 @@ _ARM = _Layout(
 _HUMANOID = _Layout(
     size=(15.0, 12.0),
     title="Contacts of a standing humanoid, from its own measurements",
-    whole_title="The whole run: the ground on the feet, and the pushes",
+    whole_title="The whole run: the ground's forces on the feet, and the contacts",
     window=(-40.0, 360.0),
     force_top=130.0,
     robots=(0.87, 0.575),
@@ -258,4 +258,4 @@ def _estimate(hit: HitResult) -> str:
         return "not detected"
     if hit.point_error is not None:
         return f"{1e3 * hit.point_error:.1f} mm off"
-    return "link only" if hit.link_right else f"named {_short(hit.named)}"
+    return "link only" if hit.link_right else f"wrong link: {_short(hit.named)}"

@@ -49,7 +49,7 @@ def draw_robot(axes: Any, robot: Robot, hit: HitResult) -> None:
 def _outcome(hit: HitResult) -> tuple[str, ...]:
     if hit.named is None:
         return ("not detected",)
-    name = "link correct" if hit.link_right else f"named {hit.named}"
+    name = "link correct" if hit.link_right else f"wrong link: {hit.named}"
     if hit.point_error is None or hit.force_error is None:
         return name, "point not determined"
     return name, f"point {1e3 * hit.point_error:.1f} mm off, force {100 * hit.force_error:.1f} % off"

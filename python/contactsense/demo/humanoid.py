@@ -129,8 +129,11 @@ def choose(
     Sensors take out the torques of the ground on the feet; their noise thus comes to all joints before them.
 
     Args:
+        robot: the humanoid.
         q: (nq,) posture.
         torque: (nv - 6,) of the motors in it [Nm].
+        noise: of the measured torques.
+        sensor_noise: of the force/torque sensors.
         gain: in place of the chosen one [1/s].
     """
     gain = choose_gain(gain, noise.none and sensor_noise.none)

@@ -128,9 +128,7 @@ def free_push(
         point, along = push.force_at(start + 0.5 * duration, pose)
         if not blocked(robot, q, link, point[None], along[None] / np.linalg.norm(along))[0]:
             return push
-    raise ContactSenseError(
-        f"seed: '{link}' cannot be pushed at {start:.1f} s along a free line; try another seed"
-    )
+    raise ContactSenseError(f"seed: no straight line to '{link}' is free at {start:.1f} s; try another seed")
 
 
 class _Recorder:

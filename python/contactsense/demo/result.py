@@ -44,6 +44,7 @@ class HitResult:
 
     @property
     def link_right(self) -> bool:
+        """Whether the estimated link is the contact link."""
         return self.named == self.link
 
 
@@ -103,14 +104,17 @@ class DemoResult:
 
     @property
     def detected(self) -> int:
+        """How many contacts were detected."""
         return sum(hit.delay is not None for hit in self.hits)
 
     @property
     def links_right(self) -> int:
+        """Of how many contacts the link is correct."""
         return sum(hit.link_right for hit in self.hits)
 
     @property
     def located(self) -> tuple[HitResult, ...]:
+        """The contacts with a located point."""
         return tuple(hit for hit in self.hits if hit.located)
 
 
@@ -128,14 +132,7 @@ class Progress:
 
 def as_data(result: DemoResult) -> dict[str, Any]:
     """Plain numbers and texts, for JSON; None where there is no estimate."""
-    data = _common_data(result)
-    if result.standing is not None:
-        data["standing"] = _standing_data(result, result.standing)
-    return data
-
-
-def _common_data(result: DemoResult) -> dict[str, Any]:
-    return {
+    data: dict[str, Any] = {
         "robot": result.robot_name,
         "seed": result.seed,
         "noise": {"percent": result.noise.percent, "newton_metres": result.noise.newton_metres},
@@ -162,6 +159,9 @@ def _common_data(result: DemoResult) -> dict[str, Any]:
             "max_us": 1e6 * result.timing.max,
         },
     }
+    if result.standing is not None:
+        data["standing"] = _standing_data(result, result.standing)
+    return data
 
 
 def _standing_data(result: DemoResult, standing: Standing) -> dict[str, Any]:

@@ -39,7 +39,7 @@ class HitScorer:
 
     @property
     def end(self) -> float:
-        """[s]"""
+        """When detections no longer belong to this contact [s]."""
         return self._push.start + self._push.duration + FADING
 
     def covers(self, time: float) -> bool:

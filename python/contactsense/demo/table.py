@@ -1,13 +1,14 @@
-"""The table of hits, truth against estimate, live while the robot is hit."""
+"""The table of contacts, truth against estimate, live while the demo runs."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console, Group, RenderableType
 from rich.live import Live
+from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
@@ -17,51 +18,45 @@ from .settings import DEVIATIONS, Settings
 
 # Header, and whether the column is aligned to the right.
 _COLUMNS = (
-    ("hit", True),
-    ("hit link", False),
+    ("no.", True),
+    ("true link", False),
     ("force\n[N]", True),
-    ("named link", False),
-    ("point", False),
+    ("estimated\nlink", False),
+    ("located", False),
     ("off by\n[mm]", True),
     ("± std\n[mm]", True),
     ("force\noff [%]", True),
     ("delay\n[ms]", True),
 )
 _NOTES = (
-    "An estimate is that of the tick with the largest torques. Point off by: distance to the true point "
-    "then; ± std: the standard deviation that the monitor itself gives. Force off: the vector against the "
-    "true peak, including what the observer smooths away. Delay: from the start of the force to detection. "
-    "Open: fewer than six joints lie before the link, or torques are too small against their errors, to "
-    "tell point and force."
+    "The estimate is that of the tick with the largest torques. Off by: the distance to the true point at "
+    "that tick. ± std: the standard deviation of the point that the monitor reports. Force off: the error of "
+    "the force vector relative to the true peak, including the delay of the observer. Delay: from the start "
+    "of the force to its detection. Not located: fewer than six joints lie before the link, or the torques "
+    "are too small compared with their errors, so that point and force cannot be determined."
 )
 
 
-class LiveTable:
-    """Takes the progress of a run and shows it."""
-
-    def __init__(self, live: Live) -> None:
-        self._live = live
-
-    def __call__(self, progress: Progress) -> None:
-        sensed = (
-            Text(f"contact on {progress.sensed}", style="bold yellow") if progress.sensed else Text("free")
-        )
-        status = Text(f"{progress.time:4.1f} of {progress.end:.0f} s   ").append_text(sensed)
-        self._live.update(Group(hit_table(progress.hits, progress.planned), status))
-
-
 @contextmanager
-def live_table(console: Console) -> Iterator[LiveTable]:
-    """Shows a table that is gone at the end; on a terminal only."""
+def live_table(console: Console) -> Iterator[Callable[[Progress], None]]:
+    """Shows a table of the progress that it is told; it is gone at the end; on a terminal only."""
     with Live(console=console, transient=True, refresh_per_second=12) as live:
-        yield LiveTable(live)
+
+        def show(progress: Progress) -> None:
+            state = Text("free")
+            if progress.sensed:
+                state = Text(f"contact on {progress.sensed}", style="bold yellow")
+            status = Text(f"{progress.time:4.1f} of {progress.end:.0f} s   ").append_text(state)
+            live.update(Group(hit_table(progress.hits, progress.planned), status))
+
+        yield show
 
 
 def hit_table(hits: Sequence[HitResult], rows: int = 0) -> Table:
-    """One row a hit, empty rows for those to come."""
+    """One row a contact, empty rows for those to come."""
     table = Table(box=SIMPLE_HEAD, header_style="bold", pad_edge=False, padding=(0, 1, 0, 0))
     for header, right in _COLUMNS:
-        table.add_column(header, justify="right" if right else "left", no_wrap=True)
+        table.add_column(escape(header), justify="right" if right else "left", no_wrap=True)
     for hit in hits:
         table.add_row(*_cells(hit))
     for number in range(len(hits) + 1, rows + 1):
@@ -80,7 +75,7 @@ def _cells(hit: HitResult) -> list[RenderableType]:
         hit.link,
         f"{hit.force:.0f}",
         named,
-        Text("found", style="green") if hit.located else Text("open", style="yellow"),
+        Text("yes", style="green") if hit.located else Text("no", style="yellow"),
         _number(hit.point_error, 1e3),
         _number(hit.point_std, 1e3),
         _number(hit.force_error, 100.0),
@@ -139,8 +134,8 @@ def summary_text(result: DemoResult) -> str:
     """One line or two."""
     located = result.located
     text = (
-        f"{result.detected} of {len(result.hits)} hits detected, {result.links_right} links named right, "
-        f"{len(located)} located"
+        f"{result.detected} of {len(result.hits)} contacts detected, {result.links_right} links correct, "
+        f"{len(located)} points located"
     )
     errors = sorted(1e3 * hit.point_error for hit in located if hit.point_error is not None)
     if errors:

@@ -12,7 +12,6 @@ from .geoms import Geom, geoms_of, named_geoms
 from .impedance import HandImpedanceController, ImpedanceController
 from .measurement import Measurement
 from .mjcf import mjcf_string, mjcf_tree
-from .mujoco_contact import ConvexPart, MujocoContact, hull_parts
 from .noise import TorqueNoise, WrenchNoise
 from .obstacles import CubeObstacle, CylinderObstacle, Obstacle, SphereObstacle, obstacle_from_dict
 from .penalty import ContactForce, PenaltyContact, joint_torque
@@ -21,7 +20,6 @@ from .quasi_static import record_quasi_static
 from .record import record_run
 from .run import ContactRun
 from .scene import TouchScene, touch_scene
-from .sensors import SensorMount
 from .standing import Sole, StandingController
 from .trajectory import SineTrajectory, TrajectoryPoint
 
@@ -32,7 +30,6 @@ __all__ = [
     "ContactPath",
     "ContactQuery",
     "ContactRun",
-    "ConvexPart",
     "Coordinates",
     "CubeObstacle",
     "CylinderObstacle",
@@ -42,13 +39,11 @@ __all__ = [
     "HandImpedanceController",
     "ImpedanceController",
     "Measurement",
-    "MujocoContact",
     "Obstacle",
     "Pace",
     "PathPoint",
     "PenaltyContact",
     "Push",
-    "SensorMount",
     "SimulatedRobot",
     "SineTrajectory",
     "Sole",
@@ -60,7 +55,6 @@ __all__ = [
     "TrajectoryPoint",
     "WrenchNoise",
     "geoms_of",
-    "hull_parts",
     "joint_exploration",
     "joint_torque",
     "mjcf_string",

@@ -34,6 +34,19 @@ def unit_vector(name: str, value: ArrayLike) -> FloatArray:
     return array / length
 
 
+def tangents(normal: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Two unit vectors (3,) across the unit vector `normal` (3,) and across each other."""
+    first = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
+    first /= np.linalg.norm(first)
+    return first, np.cross(normal, first)
+
+
+def symmetric(upper: FloatArray) -> FloatArray:
+    """The symmetric matrix (n, n) of its upper triangle, which is all that Pinocchio writes."""
+    full: FloatArray = np.triu(upper) + np.triu(upper, 1).T
+    return full
+
+
 def positive(name: str, value: float) -> float:
     """A finite number above zero."""
     if not (np.isfinite(value) and value > 0):

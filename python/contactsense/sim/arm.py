@@ -8,6 +8,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
+from contactsense import ForceTorqueSensor
 from contactsense.errors import InputError, ModelError
 
 from ._arrays import FloatArray, positive, vector
@@ -18,7 +19,7 @@ from .geoms import Geom
 from .measurement import Measurement
 from .mjcf import Integrator, mjcf_string
 from .noise import TorqueNoise, WrenchNoise
-from .sensors import SensorMount, WrenchReader
+from .sensors import WrenchReader
 
 
 class SimulatedRobot:
@@ -56,7 +57,7 @@ class SimulatedRobot:
         mjcf: str | None = None,
         noise: TorqueNoise | None = None,
         floor: Floor | None = None,
-        sensors: Sequence[SensorMount] = (),
+        sensors: Sequence[ForceTorqueSensor] = (),
         wrench_noise: WrenchNoise | None = None,
     ) -> None:
         if substeps < 1:

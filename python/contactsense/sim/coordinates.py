@@ -84,13 +84,6 @@ class Coordinates:
             v[:3] = base_rotation(q).T @ v[:3]
         return v
 
-    def qacc(self, q: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
-        """MuJoCo's acceleration for Pinocchio's `a` at `q`, `v`."""
-        qacc = self.qvel(q, a)
-        if self.floating_base:
-            qacc[:3] += base_rotation(q) @ np.cross(v[3:6], v[:3])
-        return qacc
-
 
 def base_rotation(q: FloatArray) -> FloatArray:
     """(3, 3) rotation from the free base's axes to the world's, from Pinocchio's `q`."""

@@ -66,10 +66,6 @@ class ContactQuery:
         found = [found for link in self.links if (found := self.near(q, link, 0.0)) is not None]
         return sorted(found, key=lambda contact: -contact.penetration)
 
-    def clearance(self, q: FloatArray, link: str) -> float:
-        """Gap between `link` and the obstacle [m], negative in contact."""
-        return -self.at(q, link).penetration
-
     def near(self, q: FloatArray, link: str, margin: float) -> DeepestPoint | None:
         """The deepest point of `link`, or None where the gap exceeds `margin` [m]."""
         pose = self.robot.link_pose(q, link)
@@ -156,10 +152,10 @@ def _at_center(
 
 
 def inside(surface: Surface, point: FloatArray) -> bool:
-    """Whether `point` (3,), link frame, is in the body: a ray from it leaves as often as it enters, and once
-    more.
+    """Whether `point` (3,) [m], link frame, is in the body.
 
-    On a surface that is not closed, the side of the nearest triangle decides.
+    A ray from it then meets the surface an odd number of times. On a surface that is not closed, the side of
+    the nearest triangle decides.
     """
     if not surface.watertight:
         closest = surface.closest_points(point[None])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -41,12 +41,7 @@ class TorqueError:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values."""
-        return {
-            "percent": self.percent,
-            "newton_metres": self.newton_metres,
-            "bias": self.bias,
-            "seed": self.seed,
-        }
+        return asdict(self)
 
 
 def perturbed_model(
@@ -60,6 +55,7 @@ def perturbed_model(
     """A copy of `model` with other masses: the true robot, where a nominal model is all that is known.
 
     Args:
+        model: what is known of the robot; it is left as it is.
         mass: standard deviation of each body's mass, as a share of it (0.05: 5 %); rotational inertia
             follows.
         centre: of each coordinate of its centre of mass [m].

@@ -12,7 +12,7 @@ import numpy as np
 from contactsense import Robot
 from contactsense.errors import InputError
 
-from ._arrays import FloatArray, positive
+from ._arrays import FloatArray, positive, tangents
 from .contact_path import ContactPath, Pace
 from .contact_plan import HeldLink, plan
 from .scene import TouchScene
@@ -27,9 +27,12 @@ def joint_exploration(
     pace: Pace | None = None,
     seed: int = 0,
 ) -> ContactPath:
-    """Random poses around the scene's: each joint uniform within `amplitude` [rad], then corrected.
+    """Random poses around the scene's: each joint is drawn uniformly, then the pose is corrected.
 
     Args:
+        robot: on a fixed base, its joints with one coordinate each.
+        scene: the contact that is kept.
+        amplitude: largest change of a joint before the correction [rad].
         force_band: the planned force, as shares of the scene's; uniform in the band.
         pace: of the motions.
         seed: same seed, same path.
@@ -59,19 +62,22 @@ def sliding_exploration(
     """Deliberate motions that move the contact along the surface, to and fro in all tangential directions.
 
     Args:
-        travel: of the touched point from where it was, along the obstacle [m]; as far as the joints allow.
+        robot: on a fixed base, its joints with one coordinate each.
+        scene: the contact that is kept.
+        travel: of the contact point from where it was, along the obstacle [m]; as far as the joints allow.
         largest: change of a joint [rad].
-        force_band, pace, seed, errors: as for `joint_exploration`.
+        force_band: as for `joint_exploration`.
+        pace: of the motions.
+        seed: same seed, same path.
+
+    Raises:
+        InputError: names the argument; also if the contact cannot be kept.
     """
     positive("travel", travel)
     positive("largest", largest)
     jacobian = robot.jacobian(scene.q, scene.link, scene.point)[:3]
-    helper = np.eye(3)[int(np.argmin(np.abs(scene.normal)))]
-    first = np.cross(scene.normal, helper)
-    first /= np.linalg.norm(first)
-    tangents = np.stack([first, np.cross(scene.normal, first)])
     # Damped, so that directions which the joints hardly move do not ask for large turns.
-    along = tangents @ jacobian
+    along = np.stack(tangents(scene.normal)) @ jacobian
     inverse = along.T @ np.linalg.inv(along @ along.T + 1e-2 * np.trace(along @ along.T) * np.eye(2))
     golden = np.pi * (3.0 - np.sqrt(5.0))
 
@@ -99,11 +105,18 @@ def null_space_exploration(
     """Motions in the null space of the hand's task: the hand stays where it is, the elbow moves.
 
     Args:
-        hand: link whose origin is held; not the touched one, nor before it.
+        robot: on a fixed base, its joints with one coordinate each.
+        scene: the contact that is kept.
+        hand: link whose origin is held; not the contact link, nor before it.
         amplitude: of the random turns that are projected into the null space [rad].
         hold: "position", which leaves a seven-joint arm four directions, or "pose", which leaves it one: then
             the force band alone says how far the elbow goes.
-        force_band, pace, seed, errors: as for `joint_exploration`.
+        force_band: as for `joint_exploration`.
+        pace: of the motions.
+        seed: same seed, same path.
+
+    Raises:
+        InputError: names the argument; also if the contact cannot be kept.
     """
     positive("amplitude", amplitude)
     if hold not in ("position", "pose"):

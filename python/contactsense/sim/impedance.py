@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from contactsense.errors import InputError
 
-from ._arrays import FloatArray, gains, not_negative, positive
+from ._arrays import FloatArray, gains, not_negative, positive, symmetric
 
 _AXES = pin.LOCAL_WORLD_ALIGNED
 
@@ -57,12 +57,20 @@ class ImpedanceController:
         `desired_v` (nv,) is v_d, zero by default; `feedforward` (nv,) is added.
         """
         slip = v if desired_v is None else v - desired_v
-        upper = np.triu(pin.crba(self._model, self._data, q))
-        mass = upper + np.triu(upper, 1).T
-        stiffness, damping = _gains_at(mass, self.stiffness, self.damping_ratio, self.bandwidth)
-        bias = pin.nonLinearEffects(self._model, self._data, q, v)
-        torque: FloatArray = stiffness @ (desired - q) - damping @ slip + bias
+        torque = self._feedback(q, v, desired, slip)
         return torque if feedforward is None else torque + feedforward
+
+    def _feedback(self, q: FloatArray, v: FloatArray, desired: FloatArray, slip: FloatArray) -> FloatArray:
+        """(nv,) what springs and dampers ask for, gravity and bias forces included; `slip` is `v - v_d`."""
+        mass = symmetric(pin.crba(self._model, self._data, q))
+        bias = pin.nonLinearEffects(self._model, self._data, q, v)
+        torque: FloatArray = self._joint_springs(mass, desired - q, slip) + bias
+        return torque
+
+    def _joint_springs(self, mass: FloatArray, error: FloatArray, slip: FloatArray) -> FloatArray:
+        stiffness, damping = _gains_at(mass, self.stiffness, self.damping_ratio, self.bandwidth)
+        torque: FloatArray = stiffness @ error - damping @ slip
+        return torque
 
 
 class HandImpedanceController(ImpedanceController):
@@ -103,20 +111,8 @@ class HandImpedanceController(ImpedanceController):
         sizes = [positive("translation", translation)] * 3 + [positive("rotation", rotation)] * 3
         self._hand_stiffness = np.array(sizes)
 
-    def torque(
-        self,
-        q: FloatArray,
-        v: FloatArray,
-        desired: FloatArray,
-        desired_v: FloatArray | None = None,
-        feedforward: FloatArray | None = None,
-    ) -> FloatArray:
-        """(nv,) motor torque [Nm] at `q`, `v`, with the hand drawn to where it is at `desired` (nq,).
-
-        `desired_v` (nv,) is v_d, zero by default; `feedforward` (nv,) is added.
-        """
+    def _feedback(self, q: FloatArray, v: FloatArray, desired: FloatArray, slip: FloatArray) -> FloatArray:
         model, data = self._model, self._data
-        slip = v if desired_v is None else v - desired_v
         pin.forwardKinematics(model, data, desired)
         goal = pin.updateFramePlacement(model, data, self._frame).copy()
         pin.computeAllTerms(model, data, q, v)
@@ -124,18 +120,17 @@ class HandImpedanceController(ImpedanceController):
         jacobian = pin.getFrameJacobian(model, data, self._frame, _AXES)
         turn = here.rotation @ pin.log3(here.rotation.T @ goal.rotation)
         error = np.concatenate([goal.translation - here.translation, turn])
-        mass = np.triu(data.M) + np.triu(data.M, 1).T
+        mass = symmetric(data.M)
         by_mass = np.linalg.solve(mass, jacobian.T)
         # The small term keeps a singular arm, whose hand cannot move some way, from blowing up.
         inertia = np.linalg.inv(jacobian @ by_mass + 1e-4 * np.eye(6))
         inertia = 0.5 * (inertia + inertia.T)
         spring, damper = _gains_at(inertia, self._hand_stiffness, self.damping_ratio, self.bandwidth)
         wrench = spring @ error - damper @ (jacobian @ slip)
-        stiffness, damping = _gains_at(mass, self.stiffness, self.damping_ratio, self.bandwidth)
-        free = stiffness @ (desired - q) - damping @ slip
+        free = self._joint_springs(mass, desired - q, slip)
         free -= jacobian.T @ (inertia @ (by_mass.T @ free))
         torque: FloatArray = jacobian.T @ wrench + free + data.nle
-        return torque if feedforward is None else torque + feedforward
+        return torque
 
 
 def _gains_at(

@@ -34,6 +34,7 @@ class SimulatedJoint:
 
     @property
     def name(self) -> str:
+        """The same in both models."""
         return self.body.name
 
     @property

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Sequence
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import pinocchio as pin
 
+from contactsense import ForceTorqueSensor
 from contactsense.errors import InputError, ModelError
 from contactsense.loading.description import JointTuple
 
@@ -22,7 +23,7 @@ from ._text import pose_attributes, text
 from .floor import Floor
 from .geoms import Geom
 from .joints import SimulatedJoint, joints
-from .sensors import SensorMount, write_sensors
+from .sensors import write_sensors
 
 Integrator: TypeAlias = Literal["Euler", "RK4", "implicit", "implicitfast"]
 
@@ -30,17 +31,9 @@ Integrator: TypeAlias = Literal["Euler", "RK4", "implicit", "implicitfast"]
 _LEAST = 1e-12
 
 
-def mjcf_string(
-    model: pin.Model,
-    *,
-    dt: float = 0.001,
-    integrator: Integrator = "RK4",
-    geoms: Iterable[Geom] = (),
-    floor: Floor | None = None,
-    sensors: Sequence[SensorMount] = (),
-) -> str:
-    """MJCF text for `model`; arguments and errors as for `mjcf_tree`."""
-    root = mjcf_tree(model, dt=dt, integrator=integrator, geoms=geoms, floor=floor, sensors=sensors)
+def mjcf_string(model: pin.Model, **options: Any) -> str:
+    """MJCF text for `model`; options and errors are those of `mjcf_tree`."""
+    root = mjcf_tree(model, **options)
     ET.indent(root)
     return ET.tostring(root, encoding="unicode")
 
@@ -52,7 +45,7 @@ def mjcf_tree(
     integrator: Integrator = "RK4",
     geoms: Iterable[Geom] = (),
     floor: Floor | None = None,
-    sensors: Sequence[SensorMount] = (),
+    sensors: Sequence[ForceTorqueSensor] = (),
 ) -> ET.Element:
     """MJCF elements for `model`, open to additions (obstacles) before they are written out.
 

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from contactsense.errors import InputError
 
-from ._arrays import FloatArray, positive, unit_vector, vector
+from ._arrays import FloatArray, positive, tangents, unit_vector, vector
 
 
 class _Rounded:
@@ -27,7 +27,7 @@ class _Rounded:
         raise NotImplementedError
 
     def project(self, points: FloatArray) -> FloatArray:
-        """(n, 3) nearest points of the core."""
+        """(n, 3) nearest points of the core to `points` (n, 3) [m]."""
         raise NotImplementedError
 
     def signed_distance(self, points: ArrayLike) -> FloatArray:
@@ -39,13 +39,11 @@ class _Rounded:
         distance: FloatArray = np.linalg.norm(array - self.project(array), axis=1) - self.rounding
         return distance
 
-    def gradient(self, points: ArrayLike) -> FloatArray:
-        """(n, 3) gradient of the signed distance, the outward unit normal; zero inside the core."""
-        array = _rows("points", points)
-        arm = array - self.project(array)
-        length = np.linalg.norm(arm, axis=1, keepdims=True)
-        normal: FloatArray = np.divide(arm, length, out=np.zeros_like(arm), where=length > 1e-12)
-        return normal
+    def to_dict(self) -> dict[str, Any]:
+        """Plain values for `obstacle_from_dict`."""
+        kind = next(kind for kind, shape in _KINDS.items() if isinstance(self, shape))
+        plain = {key: np.asarray(value).tolist() for key, value in vars(self).items()}
+        return {"kind": kind} | plain
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,19 +59,12 @@ class SphereObstacle(_Rounded):
 
     @property
     def rounding(self) -> float:
-        return self.radius
-
-    @property
-    def bounding_radius(self) -> float:
-        """Of the sphere about `center` that holds all of it [m]."""
+        """The radius [m]."""
         return self.radius
 
     def project(self, points: FloatArray) -> FloatArray:
+        """(n, 3) the centre [m], whatever the `points` (n, 3) are."""
         return np.broadcast_to(self.center, points.shape)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Plain values for `obstacle_from_dict`."""
-        return {"kind": "sphere", "center": self.center.tolist(), "radius": self.radius}
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,33 +101,20 @@ class CubeObstacle(_Rounded):
 
     @property
     def rounding(self) -> float:
+        """The radius of edges and corners [m]."""
         return self.edge_radius
 
     @property
     def core(self) -> FloatArray:
-        """(3,) half extents of the box within the rounding."""
+        """(3,) half extents of the box within the rounding [m]."""
         inner: FloatArray = self.half_extents - self.edge_radius
         return inner
 
-    @property
-    def bounding_radius(self) -> float:
-        """Of the sphere about `center` that holds all of it [m]."""
-        return float(np.linalg.norm(self.core)) + self.edge_radius
-
     def project(self, points: FloatArray) -> FloatArray:
+        """(n, 3) points of the box within the rounding [m], nearest to `points` (n, 3)."""
         local = (points - self.center) @ self.rotation
         nearest: FloatArray = self.center + np.clip(local, -self.core, self.core) @ self.rotation.T
         return nearest
-
-    def to_dict(self) -> dict[str, Any]:
-        """Plain values for `obstacle_from_dict`."""
-        return {
-            "kind": "cube",
-            "center": self.center.tolist(),
-            "half_extents": self.half_extents.tolist(),
-            "rotation": self.rotation.tolist(),
-            "edge_radius": self.edge_radius,
-        }
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,37 +137,24 @@ class CylinderObstacle(_Rounded):
 
     @property
     def rounding(self) -> float:
+        """The radius [m]."""
         return self.radius
-
-    @property
-    def bounding_radius(self) -> float:
-        """Of the sphere about `center` that holds all of it [m]."""
-        return self.half_length + self.radius
 
     @property
     def frame(self) -> FloatArray:
         """(3, 3) rotation to the world from axes of which the third is the pole's."""
-        first = np.cross(self.axis, np.eye(3)[int(np.argmin(np.abs(self.axis)))])
-        first /= np.linalg.norm(first)
-        return np.stack([first, np.cross(self.axis, first), self.axis], axis=1)
+        return np.stack([*tangents(self.axis), self.axis], axis=1)
 
     def project(self, points: FloatArray) -> FloatArray:
+        """(n, 3) points of the pole's segment [m], nearest to `points` (n, 3)."""
         along = np.clip((points - self.center) @ self.axis, -self.half_length, self.half_length)
         nearest: FloatArray = self.center + along[:, None] * self.axis
         return nearest
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain values for `obstacle_from_dict`."""
-        return {
-            "kind": "cylinder",
-            "center": self.center.tolist(),
-            "axis": self.axis.tolist(),
-            "radius": self.radius,
-            "half_length": self.half_length,
-        }
-
 
 Obstacle: TypeAlias = SphereObstacle | CubeObstacle | CylinderObstacle
+
+_KINDS: dict[str, Any] = {"sphere": SphereObstacle, "cube": CubeObstacle, "cylinder": CylinderObstacle}
 
 
 def obstacle_from_dict(values: Mapping[str, Any]) -> Obstacle:
@@ -198,13 +163,12 @@ def obstacle_from_dict(values: Mapping[str, Any]) -> Obstacle:
     Raises:
         InputError: no such kind, or a value is missing or wrong.
     """
-    kinds: dict[str, Any] = {"sphere": SphereObstacle, "cube": CubeObstacle, "cylinder": CylinderObstacle}
     rest = dict(values)
     kind = rest.pop("kind", None)
-    if kind not in kinds:
-        raise InputError(f"kind must be one of {', '.join(kinds)}, not {kind!r}")
+    if kind not in _KINDS:
+        raise InputError(f"kind must be one of {', '.join(_KINDS)}, not {kind!r}")
     try:
-        obstacle: Obstacle = kinds[kind](**rest)
+        obstacle: Obstacle = _KINDS[kind](**rest)
     except TypeError as error:
         raise InputError(f"obstacle: {error}") from error
     return obstacle

@@ -17,6 +17,7 @@ from .arm import SimulatedRobot
 from .deepest import ContactQuery, DeepestPoint
 from .noise import TorqueNoise
 from .obstacles import Obstacle
+from .sampling import Touch
 
 # Time in which friction must not reverse the slip [s].
 _TICK = 1e-3
@@ -134,7 +135,7 @@ class PenaltyContact:
         return ContactForce(contact.link, contact.point, contact.normal, depth, force)
 
 
-def joint_torque(robot: Robot, q: FloatArray, forces: Iterable[ContactForce]) -> FloatArray:
+def joint_torque(robot: Robot, q: FloatArray, forces: Iterable[ContactForce | Touch]) -> FloatArray:
     """(nv,) external joint torque of `forces` at `q`: the sum of `J^T F` [Nm]."""
     total = np.zeros(robot.nv)
     for contact in forces:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contactsense import Surface
 from contactsense.errors import InputError
 
-from ._arrays import FloatArray, positive, unit_vector, vector
+from ._arrays import FloatArray, positive, tangents, unit_vector, vector
 from .arm import SimulatedRobot
 
 
@@ -59,24 +59,9 @@ class Push:
         return point, force
 
 
-class SurfaceSamples(Protocol):
-    """Points and outward unit normals on a surface, each (n, 3), link frame."""
-
-    @property
-    def points(self) -> NDArray[np.float64]: ...
-    @property
-    def normals(self) -> NDArray[np.float64]: ...
-
-
-class SampledSurface(Protocol):
-    """A surface that gives points uniform by area, repeatable by seed."""
-
-    def sample(self, n: int, seed: int = 0) -> SurfaceSamples: ...
-
-
 def random_push(
     link: str,
-    surface: SampledSurface,
+    surface: Surface,
     *,
     peak_force: float,
     start: float,
@@ -87,7 +72,11 @@ def random_push(
     """A push at a random point of the link's surface, inward, fixed to the link.
 
     Args:
+        link: the link that is pushed.
         surface: of `link`, in its frame.
+        peak_force: [N].
+        start: [s].
+        duration: [s].
         cone_angle: largest angle [rad] between force and inward normal, below pi/2; directions are uniform in
             the cone. The arctangent of the friction coefficient makes it the friction cone.
         seed: same seed, same push.
@@ -99,14 +88,7 @@ def random_push(
     generator = np.random.default_rng(seed)
     cosine = generator.uniform(np.cos(cone_angle), 1.0)
     turn = generator.uniform(0.0, 2 * np.pi)
-    first, second = _tangents(inward)
+    first, second = tangents(inward)
     side = np.cos(turn) * first + np.sin(turn) * second
     direction = cosine * inward + np.sqrt(1.0 - cosine**2) * side
     return Push(link, samples.points[0], direction, peak_force, start, duration)
-
-
-def _tangents(normal: FloatArray) -> tuple[FloatArray, FloatArray]:
-    helper = np.eye(3)[int(np.argmin(np.abs(normal)))]
-    first = np.cross(normal, helper)
-    first /= np.linalg.norm(first)
-    return first, np.cross(normal, first)

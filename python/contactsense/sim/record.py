@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 import numpy as np
 import pinocchio as pin
@@ -14,32 +14,18 @@ from ._arrays import FloatArray, not_negative, positive
 from .contact_path import ContactPath
 from .disturbance import TorqueError
 from .impedance import ImpedanceController
-from .mujoco_contact import MujocoContact
 from .noise import TorqueNoise
 from .penalty import ContactForce, PenaltyContact, joint_torque
 from .quasi_static import contact_run
 from .run import ContactRun
 
 
-class SoftController(Protocol):
-    """`ImpedanceController`, `HandImpedanceController`, or another."""
-
-    def torque(
-        self,
-        q: FloatArray,
-        v: FloatArray,
-        desired: FloatArray,
-        desired_v: FloatArray | None = None,
-        feedforward: FloatArray | None = None,
-    ) -> FloatArray: ...
-
-
 def record_run(
     robot: Robot,
-    contact: PenaltyContact | MujocoContact,
+    contact: PenaltyContact,
     path: ContactPath,
     *,
-    controller: SoftController | None = None,
+    controller: ImpedanceController | None = None,
     true_model: pin.Model | None = None,
     error: TorqueError | None = None,
     sensor_noise: TorqueNoise | None = None,
@@ -57,9 +43,9 @@ def record_run(
 
     Args:
         robot: what is known of the arm: the observer and the controller use it.
-        contact: `PenaltyContact`, at the deepest point of the true surface, or `MujocoContact`.
+        contact: a spring at the deepest point of the true surface.
         path: see `joint_exploration` and its like.
-        controller: `ImpedanceController(robot.model)` by default.
+        controller: `ImpedanceController(robot.model)` by default; its `torque` is called once a tick.
         true_model: the arm as it is (see `perturbed_model`), which is simulated; `robot.model` by default.
         error: added to the recorded external torque, once a sample.
         sensor_noise: of the measured motor torques at every tick; what of it gets through depends on

@@ -73,6 +73,7 @@ def touch_scene(
     Args:
         robot: poses are drawn from the middle 90 % of its joints' limits (a turn about zero where there are
             none).
+        link: the contact link; it has a surface and moves.
         kind: "sphere"; "cube", with an edge towards the link; "cylinder", a pole across it in a random
             way.
         q: (nq,) this pose instead of a random one.
@@ -81,6 +82,7 @@ def touch_scene(
         stiffness_range: log-uniform [N/m]; equal ends fix it. Where the force would press deeper than the
             obstacle's rounding allows, it is drawn again.
         least_torque: Euclidean norm that the external torque must reach [Nm].
+        clearance: least distance of the other links from the obstacle [m].
         seed: same seed, same scene.
 
     Raises:

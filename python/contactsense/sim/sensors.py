@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol
 
 import numpy as np
 import pinocchio as pin
 
+from contactsense import ForceTorqueSensor
 from contactsense.errors import InputError
 
 from ._arrays import FloatArray
@@ -16,29 +16,8 @@ from ._mujoco import mujoco
 from ._text import pose_attributes
 
 
-class SensorMount(Protocol):
-    """Where a sensor sits: as `contactsense.ForceTorqueSensor` says."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def link(self) -> str:
-        """The sensor is where this link joins its parent; the link and all behind it load the sensor."""
-        ...
-
-    @property
-    def pose(self) -> Any:
-        """(4, 4) of the sensor's frame in the link's; None for the same."""
-        ...
-
-    @property
-    def convention(self) -> str:
-        """ "load": what the distal side puts on the sensor (a free hand at rest: its weight); "support"."""
-        ...
-
-
 def write_sensors(
-    root: ET.Element, bodies: Mapping[int, ET.Element], model: pin.Model, sensors: Sequence[SensorMount]
+    root: ET.Element, bodies: Mapping[int, ET.Element], model: pin.Model, sensors: Sequence[ForceTorqueSensor]
 ) -> None:
     """Add a `<site>`, a `<force>` and a `<torque>` for each sensor; `bodies` by Pinocchio's joint numbers."""
     if not sensors:
@@ -50,8 +29,7 @@ def write_sensors(
     readings = ET.SubElement(root, "sensor") if element is None else element
     for sensor in sensors:
         joint, placement = _joint_before(model, sensor)
-        pose = np.eye(4) if sensor.pose is None else np.asarray(sensor.pose, dtype=np.float64)
-        ET.SubElement(bodies[joint], "site", pose_attributes(placement @ pose), name=sensor.name)
+        ET.SubElement(bodies[joint], "site", pose_attributes(placement @ sensor.pose), name=sensor.name)
         for kind in ("force", "torque"):
             ET.SubElement(readings, kind, name=f"{sensor.name}:{kind}", site=sensor.name)
 
@@ -59,7 +37,7 @@ def write_sensors(
 class WrenchReader:
     """Readings of all sensors, in their order, as their conventions have them."""
 
-    def __init__(self, mj_model: mujoco.MjModel, sensors: Sequence[SensorMount]) -> None:
+    def __init__(self, mj_model: mujoco.MjModel, sensors: Sequence[ForceTorqueSensor]) -> None:
         rows = []
         for sensor in sensors:
             for kind in ("force", "torque"):
@@ -80,7 +58,7 @@ class WrenchReader:
         return wrenches
 
 
-def _joint_before(model: pin.Model, sensor: SensorMount) -> tuple[int, FloatArray]:
+def _joint_before(model: pin.Model, sensor: ForceTorqueSensor) -> tuple[int, FloatArray]:
     """The joint that `sensor.link` hangs on, and the link's pose in the joint's frame."""
     if not model.existFrame(sensor.link, pin.FrameType.BODY):
         raise InputError(f"sensors: '{sensor.name}' sits before link '{sensor.link}', which does not exist")

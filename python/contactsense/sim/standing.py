@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from contactsense.errors import InputError, ModelError
 
-from ._arrays import FloatArray, gains, not_negative, vector
+from ._arrays import FloatArray, gains, not_negative, symmetric, vector
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ class StandingController:
         """(nv - 6,) motor torque [Nm] at position `q` (nq,) and velocity `v` (nv,)."""
         model, data = self._model, self._data
         pin.computeAllTerms(model, data, q, v)
-        mass = np.triu(data.M) + np.triu(data.M, 1).T
+        mass = symmetric(data.M)
         jacobian = np.vstack([pin.getFrameJacobian(model, data, frame, _AXES) for frame in self._frames])
         drift = self._drift(q, v)
         a = self._kp * pin.difference(model, q, self._posture) - self._kd * v

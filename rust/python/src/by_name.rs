@@ -1,6 +1,6 @@
 //! Values by joint name, and the pose of a floating base, from Python objects.
 
-use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
+use nalgebra::{Rotation3, UnitQuaternion};
 use pyo3::prelude::*;
 use pyo3::types::PyMapping;
 
@@ -25,14 +25,7 @@ pub fn base_pose(object: &Bound<'_, PyAny>) -> PyResult<[f64; 7]> {
         return vector.fixed::<7>(object.py(), "base");
     }
     let pose = placement("base", object)?;
-    let rotation = Rotation3::from_matrix_unchecked(pose.rotation);
-    let off = (pose.rotation.tr_mul(&pose.rotation) - Matrix3::identity()).amax();
-    if off > 1e-6 {
-        let text =
-            "base: the matrix must be a pose, its rotation orthonormal; else give (x, y, z, qx, qy, qz, qw)";
-        return Err(input(object.py(), text.into()));
-    }
-    let turn = UnitQuaternion::from_rotation_matrix(&rotation);
+    let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(pose.rotation));
     let ([x, y, z], [i, j, k, w]) = (pose.translation.into(), turn.coords.into());
     Ok([x, y, z, i, j, k, w])
 }

@@ -22,15 +22,20 @@ pub fn square(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Matrix3<f64>> {
     }
 }
 
-/// A `(4, 4)` pose.
+/// A rigid `(4, 4)` pose.
 pub fn placement(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Pose> {
-    match rows::<4>(name, object)?.as_slice() {
-        [a, b, c, _] => Ok(Pose {
+    let pose = match rows::<4>(name, object)?.as_slice() {
+        [a, b, c, [0.0, 0.0, 0.0, 1.0]] => Pose {
             rotation: Matrix3::new(a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]),
             translation: Vector3::new(a[3], b[3], c[3]),
-        }),
-        _ => Err(input(object.py(), format!("{name}: expected an array of shape (4, 4)"))),
-    }
+        },
+        _ => {
+            let text = format!("{name}: expected an array of shape (4, 4) with last row 0, 0, 0, 1");
+            return Err(input(object.py(), text));
+        }
+    };
+    pose.check_rigid().map_err(|why| input(object.py(), format!("{name}: {why}")))?;
+    Ok(pose)
 }
 
 fn kind(py: Python<'_>, name: &str) -> PyResult<JointKind> {

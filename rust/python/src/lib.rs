@@ -25,6 +25,8 @@ mod pickle;
 mod report;
 mod returned;
 mod robot;
+mod robot_mechanics;
+mod robot_vectors;
 mod sensor;
 mod surface;
 mod urdf;

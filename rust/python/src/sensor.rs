@@ -13,8 +13,6 @@ use crate::errors::{input, refused};
 use crate::pickle::{reduced, Reduced};
 use crate::returned::{pose, read_only};
 
-const LAST_ROW: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
-
 /// A six-axis force/torque sensor where `link` joins its parent: `link` and all behind it load the sensor.
 ///
 /// A reading is (force, moment) about the sensor frame's origin, in its axes [N, Nm]. Frozen; equal where all arguments
@@ -60,26 +58,9 @@ impl PyForceTorqueSensor {
                 return Err(input(py, format!("convention: must be 'load' or 'support', not '{other}'")));
             }
         };
-        let pose = pose.map_or(Ok(Pose::identity()), |object| {
-            let rows = rows::<4>("pose", object)?;
-            if rows.len() != 4 || rows[3] != LAST_ROW {
-                return Err(input(
-                    py,
-                    "pose: expected an array of shape (4, 4) with last row 0, 0, 0, 1".into(),
-                ));
-            }
-            placement("pose", object)
-        })?;
-        let sensor = ForceTorqueSensor {
-            name: text("name", name)?.into(),
-            link: text("link", link)?.into(),
-            pose,
-            convention,
-        };
-        if !sensor.has_rigid_pose() {
-            return Err(input(py, "pose: must be rigid: a rotation matrix and a translation [m]".into()));
-        }
-        Ok(Self(sensor))
+        let pose = pose.map_or(Ok(Pose::identity()), |object| placement("pose", object))?;
+        let (name, link) = (text("name", name)?.into(), text("link", link)?.into());
+        Ok(Self(ForceTorqueSensor { name, link, pose, convention }))
     }
 
     /// Name of the sensor.

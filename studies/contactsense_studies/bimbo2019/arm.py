@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 
-import numpy as np
-
 from contactsense import InputError, Robot
-from contactsense.robot import DESCRIPTIONS
+from contactsense.sim.deepest import moving_links
 
+from ..example_robots import robot_of
 from .options import Options
 
 
@@ -37,9 +36,7 @@ def load_arm(options: Options) -> Arm:
 
 @lru_cache(maxsize=1)
 def _load(name: str, package_dirs: tuple[str, ...]) -> Arm:
-    robot = Robot.named(name) if name in DESCRIPTIONS else Robot.from_urdf(name, package_dirs=package_dirs)
+    robot = robot_of(name, package_dirs)
     if robot.floating_base or robot.nq != robot.nv:
         raise InputError(f"robot: '{name}' must be an arm on a fixed base, its joints of one coordinate each")
-    q = robot.neutral()
-    moving = tuple(link for link in robot.link_names if np.any(robot.jacobian(q, link)))
-    return Arm(robot, moving)
+    return Arm(robot, moving_links(robot))

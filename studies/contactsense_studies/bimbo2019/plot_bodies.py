@@ -95,10 +95,7 @@ def triangles(obstacle: Obstacle, near: FloatArray) -> FloatArray:
     assert isinstance(obstacle, CylinderObstacle)
     axis = obstacle.axis
     middle = obstacle.center + np.clip((near - obstacle.center) @ axis, -0.2, 0.2) * axis
-    first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    first /= np.linalg.norm(first)
-    frame = np.stack([first, np.cross(axis, first), axis], axis=1)
-    return _round(middle, frame, obstacle.radius, min(0.3, obstacle.half_length))
+    return _round(middle, obstacle.frame, obstacle.radius, min(0.3, obstacle.half_length))
 
 
 def _round(center: FloatArray, frame: FloatArray, radius: float, half: float) -> FloatArray:
@@ -124,13 +121,6 @@ def _box(cube: CubeObstacle) -> FloatArray:
             corners = np.zeros((2, 2, 3))
             corners[..., axis] = sign
             corners[..., u] = [[-1, -1], [1, 1]]
-            corners[..., v] = [[-sign, sign], [-sign, sign]]
+            corners[..., v] = [[sign, -sign], [sign, -sign]]
             faces.append(_quads(cube.center + (corners * cube.half_extents) @ cube.rotation.T))
-    return _outward(np.concatenate(faces), cube.center)
-
-
-def _outward(faces: FloatArray, center: FloatArray) -> FloatArray:
-    normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
-    inward = np.einsum("ij,ij->i", normals, faces.mean(axis=1) - center) < 0.0
-    faces[inward] = faces[inward][:, ::-1]
-    return faces
+    return np.concatenate(faces)

@@ -25,9 +25,7 @@ Bar = tuple[str, Experiment, Filter]
 
 def draw_models(figure: Figure, study: Study) -> None:
     """Motion models side by side, one panel a set-up."""
-    _draw(
-        figure, study, (*MODELS, PRINTED), COLOURS, "Where is the contact? Error of the point by motion model"
-    )
+    _draw(figure, study, (*MODELS, PRINTED), COLOURS, "Error of the point by motion model")
 
 
 def draw_noise(figure: Figure, study: Study) -> None:
@@ -97,7 +95,7 @@ def finish(figure: Figure, axes: Any, columns: int) -> None:
         loc="outside lower center",
         ncols=columns,
         frameon=False,
-        title="bar: mean; line: median; dot: a trial; beneath: trials on the right link, %, where not all",
+        title="bar: mean; line: median; dot: a trial; below: trials with the correct link, %, if not all",
     )
 
 
@@ -139,5 +137,5 @@ def _coverage(axes: Any, study: Study) -> None:
     axes.axhline(100 * ASKED, color=TEXT, lw=0.8, ls="--")
     axes.set_xticks(range(len(study.links)), [study.short(link) for link in study.links])
     axes.set_ylim(0, 105)
-    axes.set_title("The 90 % region holds the true point, % of trials")
+    axes.set_title("The 90 % region contains the true point, % of trials")
     axes.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.08), ncols=2)

@@ -33,7 +33,7 @@ def draw_progress(figure: Figure, study: Study) -> None:
         return
     progress = watch(study.options, trial, SHARES)
     figure.suptitle(
-        f"A contact on {study.short(trial.link)}: what the filter holds possible while the arm moves",
+        f"A contact on {study.short(trial.link)}: the particles of the filter while the arm moves",
         fontsize=13,
         weight="bold",
         x=0.02,
@@ -53,7 +53,7 @@ def draw_progress(figure: Figure, study: Study) -> None:
         if below is not axes[1, 0]:
             below.set_yticklabels([])
     axes[1, 0].set_ylabel("force, N")
-    figure.colorbar(dots, ax=axes, label="torques not explained, share", shrink=0.8, pad=0.01)
+    figure.colorbar(dots, ax=axes, label="share of the torques that is not explained", shrink=0.8, pad=0.01)
     handles = [
         axes[1, 0].plot([], [], "-", color=ESTIMATE, lw=2, label="true point and force")[0],
         axes[1, 0].plot([], [], "o", mfc="none", mec=TRUTH, ms=8, label="estimate")[0],

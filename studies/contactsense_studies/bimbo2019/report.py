@@ -14,15 +14,15 @@ from .study import Study
 
 CONFIDENCE = (
     *("worst\ncm", "force\n%", "90 %\n%", "spread\ncm"),
-    *("p\n%", "open\n%", "of wrong\n%", "mode\ncm"),
+    *("p\n%", "ambi-\nguous", "of wrong\n%", "mode\ncm"),
 )
 NOTES = (
     "cm: mean/median distance of the estimated point from the true one, at the end of the run.",
-    "link: share of trials with the right link, %. Printed: likelihood (5), explicit schedule.",
-    "90 %: share of trials where the 90 % region of the covariance holds the true point.",
-    "spread: median standard deviation that the estimate gives for its point.",
-    "p: mean probability of the true link. open: share said to be ambiguous; of wrong: the same, of",
-    "the trials on a wrong link. mode: median distance of the nearest mode from the true point.",
+    "link: share of trials with the correct link, %. Printed: likelihood (5), explicit schedule.",
+    "90 %: share of trials in which the 90 % region of the covariance contains the true point.",
+    "spread: median of the standard deviation of the point that the estimate states.",
+    "p: mean probability of the true link. ambiguous: share of trials, %; of wrong: the same, of the",
+    "trials with a wrong link. mode: median distance of the nearest mode from the true point.",
 )
 
 

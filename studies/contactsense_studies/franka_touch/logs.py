@@ -130,7 +130,7 @@ def log_of_table(name: str, table: FloatArray, origin: str) -> TouchLog:
     if not np.all((label == 0) | (label == 1)):
         raise InputError(f"data: '{origin}', column label: must be 0 or 1")
     if not np.any(label == 1):
-        raise InputError(f"data: '{origin}', column label: no touch in this log")
+        raise InputError(f"data: '{origin}', column label: no contact in this log")
     q, dq, tau, vendor = np.split(table[:, 1:-1], len(VECTORS), axis=1)
     # The vendor's sign is that of the measured torque: what the robot exerts.
     return TouchLog(name, time, q.copy(), dq.copy(), tau.copy(), -vendor, label == 1)

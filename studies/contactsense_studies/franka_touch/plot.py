@@ -56,7 +56,8 @@ def _draw_log(figure: Any, study: Study, index: int) -> None:
         axes.margins(x=0.01)
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=9, frameon=False)
     base.set_title(
-        f"{log.name}: link {log.link} touched. Labels shaded, onsets dashed (false: red), link named above",
+        f"{log.name}: contacts on link {log.link}. Shaded: label; dashed: onset (false: red); "
+        "above: estimated link",
         pad=16,
     )
     for touch in judged.touches:
@@ -87,12 +88,12 @@ def _draw_summary(figure: Any, study: Study) -> None:
     for axes in (delays, links):
         axes.set_xticks(range(len(ticks)), ticks, fontsize=9)
     delays.axhline(0.0, color="0.6", lw=0.8)
-    delays.set_ylabel("onset after the label's begin [ms]")
-    delays.set_title("onset of every touch felt (* settings chosen here)")
+    delays.set_ylabel("onset after the start of the label [ms]")
+    delays.set_title("onset of every detected contact (* settings chosen with this file)")
     delays.legend(fontsize=9, frameon=False)
     links.set_ylim(0.0, 1.05)
-    links.set_ylabel("share of touches")
-    links.set_title("right link named (light: it or a neighbour)")
+    links.set_ylabel("share of contacts")
+    links.set_title("correct link (light: it or a neighbour)")
 
 
 def _draw_delays(axes: Any, evaluation: Evaluation, offset: float, color: str, label: str) -> None:

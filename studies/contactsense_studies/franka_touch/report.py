@@ -17,8 +17,8 @@ from .touches import EARLY, TouchResult
 
 SOURCES = {"measured": "momentum observer on measured torques", "vendor": "the vendor's external torque"}
 FIGURES = (
-    *("felt", "early", "onset\nms", "false\n/min", "exact"),
-    *("near", "most", "agree", "point", "apart\nmm"),
+    *("detec-\nted", "early", "onset\nms", "false\n/min", "cor-\nrect"),
+    *("or\nnext", "most\noften", "share", "loca-\nted", "spread\nmm"),
 )
 
 
@@ -27,21 +27,22 @@ def print_study(study: Study, console: Console, *, touches: bool = False) -> Non
     tables = [table(evaluation) for evaluation in (study.measured, study.vendor)]
     repeated = np.mean([log.repeated for log in study.logs])
     notes = (
-        "* Settings were chosen on these files alone.",
-        "Onset (median/greatest): after the label's begin. Labels are by hand: an onset",
-        f"up to {EARLY:g} s before belongs to the touch, and is counted as early too.",
-        "False: onsets at any other time, per minute of it.",
-        "Exact, near: touches whose link is named right, or as it or a neighbour.",
-        "Most, agree: the link named most, its share. Point: located (+ behind a link).",
-        "Apart: RMS distance of a file's located points from their mean.",
-        f"{repeated:.0%} of the rows repeat the row before; the monitor was given all of them.",
+        "* The settings were chosen with these files alone.",
+        "Onset: delay of the detection after the start of the label, median/maximum. Labels",
+        f"were set by hand: an onset up to {EARLY:g} s earlier belongs to the contact (early).",
+        "False: onsets at any other time, per minute of that time.",
+        "Correct, or next: share of the contacts for which the estimated link is the contact",
+        "link, or that link or a neighbour. Most often, share: the link that is estimated most",
+        "often. Located: share of the contacts with a located point (+ in the table of all",
+        "contacts). Spread: RMS distance of a file's located points from their mean.",
+        f"{repeated:.0%} of the rows repeat the row before; the monitor received all of them.",
     )
     print_tables(console, [touch_table(study), *tables] if touches else tables, notes)
 
 
 def table(evaluation: Evaluation) -> Table:
     """One row a file."""
-    title = f"Franka touches, {SOURCES[evaluation.settings.source]}"
+    title = f"Contacts of a Franka arm, {SOURCES[evaluation.settings.source]}"
     result = sheet(title, ("file\nlink",), FIGURES)
     for log in evaluation.logs:
         link, _ = most_frequent(log.touches)
@@ -56,8 +57,8 @@ def table(evaluation: Evaluation) -> Table:
 
 def touch_table(study: Study) -> Table:
     """One row a touch, both evaluations side by side."""
-    figures = ("observer:\nonset, ms", "link\nnamed", "vendor:\nonset, ms", "link\nnamed")
-    result = sheet("Every touch", ("file", "link", "label, s"), figures)
+    figures = ("observer:\nonset, ms", "esti-\nmated", "vendor:\nonset, ms", "esti-\nmated")
+    result = sheet("Every contact", ("file", "link", "label, s"), figures)
     for own, other in zip(study.measured.logs, study.vendor.logs, strict=True):
         for mine, theirs in zip(own.touches, other.touches, strict=True):
             label = f"{mine.start:.2f} to {mine.end:.2f}"

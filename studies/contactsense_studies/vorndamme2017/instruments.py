@@ -8,6 +8,7 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 
 from contactsense import Robot
+from contactsense.sim import joint_torque
 from contactsense.sim._arrays import FloatArray
 from contactsense.sim.atlas import SENSOR_LINKS
 
@@ -23,10 +24,7 @@ METHODS: tuple[Method, ...] = get_args(Method)
 
 def external_torque(robot: Robot, scene: Scene) -> FloatArray:
     """What the pushes do to the joints: sum of `J^T f` `(nv,)`."""
-    tau = np.zeros(robot.nv)
-    for touch in scene.touches:
-        tau += robot.jacobian(scene.q, touch.link, touch.point)[:3].T @ touch.force
-    return tau
+    return joint_torque(robot, scene.q, scene.touches)
 
 
 def sensor_links(method: Method) -> tuple[str, ...]:

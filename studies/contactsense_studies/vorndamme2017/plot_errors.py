@@ -32,7 +32,7 @@ def draw_pairs(figure: Figure, study: Study) -> None:
     panels = (
         ("Joint torques", study.run("pairs", "torques")),
         ("Joint torques and nine sensors", study.run("pairs", "both")),
-        ("Paper's steps, links given*", study.baseline("pairs")),
+        ("Steps of the paper, links given*", study.baseline("pairs")),
     )
     axes = figure.subplots(1, 3)
     for each, (title, run) in zip(axes, panels, strict=True):
@@ -47,7 +47,7 @@ def draw_pairs(figure: Figure, study: Study) -> None:
         loc="outside lower center",
         ncols=len(BINS),
         frameon=False,
-        title="worse of the two contacts: distance from its point to the estimate (* told which links)",
+        title="worse of the two contacts: distance from its point to the estimate (* true links given)",
     )
 
 

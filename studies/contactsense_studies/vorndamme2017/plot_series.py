@@ -26,9 +26,9 @@ WIDTHS: dict[Method, float] = {"sensors": 4.5, "torques": 2.0, "both": 2.0}
 FLOOR = 1e-17  # [m]
 SHOWN = (-1.0, 36.0)  # [ms]
 TITLES: dict[Kind, str] = {
-    "late": "{0} hits, as late as (6) and (10) say",
-    "prompt": "{0} hits, acceleration without delay",
-    "simulated": "{0} simulated hits of {1:g} N, in motion",
+    "late": "{0} impacts, delayed as in (6) and (10)",
+    "prompt": "{0} impacts, acceleration without delay",
+    "simulated": "{0} simulated impacts of {1:g} N, in motion",
 }
 
 
@@ -49,12 +49,12 @@ def draw_series(figure: Figure, study: Study) -> None:
         force.plot(fine, half_sine(1e-3 * fine), color=TRUTH, lw=1.3, ls=(0, (4, 2)), label="true", zorder=4)
         force.axhline(0.0, color=GREY, lw=0.6)
         force.set_title(title.format(len(hits), amplitude), weight="bold")
-        point.set_xlabel("time since the hit began [ms]")
+        point.set_xlabel("time since the impact began [ms]")
         for each in (force, point):
             each.axvspan(0.0, 1e3 * DURATION, color="0.95", lw=0, zorder=0)
             each.set_xlim(*SHOWN)
-    axes[0, 0].set_ylabel("force found / greatest true force")
-    axes[1, 0].set_ylabel("true point to claimed point [m]")
+    axes[0, 0].set_ylabel("estimated force / largest true force")
+    axes[1, 0].set_ylabel("error of the located point [m]")
     axes[1, 0].set_yscale("log")
     axes[1, 0].set_ylim(FLOOR / 2, 5.0)
     handles, labels = axes[0, 0].get_legend_handles_labels()
@@ -64,7 +64,7 @@ def draw_series(figure: Figure, study: Study) -> None:
         loc="outside lower center",
         ncols=len(labels),
         frameon=False,
-        title="medians, and 90 % of the hits shaded; below, every sample with a claimed point is a dot",
+        title="medians, and 90 % of the impacts shaded; below, every sample with a located point is a dot",
     )
 
 

@@ -180,7 +180,7 @@ def _hits(
         for kind, amplitude in sets
         for scene in (scenes[::SIMULATED] if kind == "simulated" else scenes)
     ]
-    found, complete = run_trials(_hit, items, "hits over time", processes, progress)
+    found, complete = run_trials(_hit, items, "impacts over time", processes, progress)
     series: dict[tuple[Kind, float], list[Series]] = {kind_and_size: [] for kind_and_size in sets}
     for (kind, _, _), one in zip(items, found, strict=False):
         size = min(AMPLITUDES, key=lambda amplitude: abs(amplitude - one.amplitude))

@@ -4,10 +4,9 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::check::principal_moments;
 use super::ids::LinkIndex;
-use super::lump::joined;
-use super::robot::{Body, Robot};
+use super::lump::{joined, placed};
+use super::robot::Robot;
 use crate::error::{Error, Result};
-use crate::spatial::Pose;
 
 /// Share of the largest entry: what computing an inertia in other axes leaves.
 const ROUNDING: f64 = 1e-9;
@@ -59,7 +58,8 @@ impl Robot {
         (held.mass, held.com, held.inertia) =
             joined((held.mass, held.com, held.inertia), (mass, com, inertia));
         if let Some(body) = loaded.bodies.get_mut(body).filter(|_| body != 0) {
-            body.add(mass, &com, &inertia, &placement);
+            let added = placed((mass, com, inertia), &placement);
+            (body.mass, body.com, body.inertia) = joined((body.mass, body.com, body.inertia), added);
         }
         Ok(loaded)
     }
@@ -67,16 +67,6 @@ impl Robot {
     /// Mass of all that moves (kg).
     pub fn mass(&self) -> f64 {
         self.bodies.iter().map(|body| body.mass).sum()
-    }
-}
-
-impl Body {
-    /// Adds what is given in a frame placed in the body's.
-    fn add(&mut self, mass: f64, com: &Vector3<f64>, inertia: &Matrix3<f64>, placement: &Pose) {
-        let com = placement.transform_point(com);
-        let inertia = placement.rotation * inertia * placement.rotation.transpose();
-        (self.mass, self.com, self.inertia) =
-            joined((self.mass, self.com, self.inertia), (mass, com, inertia));
     }
 }
 

@@ -1,11 +1,6 @@
 //! A six-axis force/torque sensor.
 
-use nalgebra::Matrix3;
-
 use crate::spatial::Pose;
-
-/// A pose's rotation may be off by this much.
-const RIGID_TOLERANCE: f64 = 1e-6;
 
 /// Which side's wrench a reading is.
 ///
@@ -53,15 +48,13 @@ impl Convention {
 /// use contactsense::sensor::{Convention, ForceTorqueSensor};
 /// use contactsense::spatial::Pose;
 ///
-/// let mut sensor = ForceTorqueSensor {
+/// let sensor = ForceTorqueSensor {
 ///     name: "wrist".into(),
 ///     link: "link_7".into(),
 ///     pose: Pose::identity(),
 ///     convention: Convention::Load,
 /// };
-/// assert!(sensor.has_rigid_pose());
-/// sensor.pose.rotation *= 2.0;
-/// assert!(!sensor.has_rigid_pose());
+/// assert_eq!(sensor.pose.check_rigid(), Ok(()));
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -75,14 +68,4 @@ pub struct ForceTorqueSensor {
     pub pose: Pose,
     /// What a reading means.
     pub convention: Convention,
-}
-
-impl ForceTorqueSensor {
-    /// Whether the pose is a rotation and a finite translation.
-    pub fn has_rigid_pose(&self) -> bool {
-        let Pose { rotation, translation } = &self.pose;
-        let finite = rotation.iter().chain(translation).all(|x| x.is_finite());
-        let skew = (rotation.transpose() * rotation - Matrix3::identity()).amax();
-        finite && skew < RIGID_TOLERANCE && rotation.determinant() > 0.0
-    }
 }

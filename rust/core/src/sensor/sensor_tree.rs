@@ -289,12 +289,8 @@ fn mount(robot: &Robot, sensor: &ForceTorqueSensor) -> Result<Mount> {
             ),
         ));
     }
-    if !sensor.has_rigid_pose() {
-        return Err(Error::input(
-            "sensors",
-            format!("the pose of '{name}' must be rigid: a rotation matrix and a finite translation [m]"),
-        ));
-    }
+    let rigid = sensor.pose.check_rigid();
+    rigid.map_err(|why| Error::input("sensors", format!("the pose of '{name}' {why}")))?;
     Ok(Mount { link: index, body: link.body, placement: link.placement.compose(&sensor.pose), parent: None })
 }
 

@@ -70,7 +70,10 @@ impl Surface {
 }
 
 fn solid(part: Part, first: usize, remarks: &mut Vec<String>) -> Result<Solid> {
-    part::check_pose(&part.pose)?;
+    let rigid = part.pose.check_rigid();
+    rigid.map_err(|why| {
+        Error::geometry(format!("a part's pose {why}; mirror or scale the geometry instead"))
+    })?;
     match part.geometry {
         Geometry::Mesh { vertices, triangles } => {
             let placed = vertices.into_iter().map(|v| part.pose.transform_point(&v.into())).collect();

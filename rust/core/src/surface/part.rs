@@ -154,19 +154,3 @@ pub(super) fn primitive(geometry: &Geometry) -> Result<Primitive> {
         Geometry::Mesh { .. } => return Err(Error::geometry("a mesh is no primitive")),
     })
 }
-
-/// Checks that a pose is finite and its rotation a rotation.
-pub(super) fn check_pose(pose: &Pose) -> Result<()> {
-    let r = &pose.rotation;
-    if !r.iter().chain(pose.translation.iter()).all(|x| x.is_finite()) {
-        return Err(Error::geometry("a part's pose has numbers that are not finite"));
-    }
-    let off = (r.transpose() * r - nalgebra::Matrix3::identity()).abs().max();
-    if off > 1e-6 || r.determinant() < 0.0 {
-        return Err(Error::geometry(format!(
-            "a part's pose has a rotation that is not orthonormal and right-handed (off by {off:.1e}); mirror or \
-             scale the geometry instead"
-        )));
-    }
-    Ok(())
-}

@@ -1,11 +1,11 @@
 //! Bodies from links: what is fixed to one joint is one body.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
-use urdf_rs::{Inertial, JointType};
+use urdf_rs::JointType;
 
 use super::tree::{Visit, ROOT_JOINT};
 use crate::robot::description::{JointDescription, JointKind, LinkDescription, RobotDescription};
-use crate::robot::lump::joined;
+use crate::robot::lump::{joined, placed, Inertia};
 use crate::robot::{BodyIndex, LinkIndex};
 use crate::spatial::Pose;
 
@@ -46,21 +46,15 @@ pub(super) fn bodies(
             }
         };
         let link = &robot.links[visit.link];
+        let (mass, com, inertia) = inertia(&link.inertial);
         // What is fixed to the world never moves.
-        if let Some(moving) = body.get().checked_sub(1).and_then(|index| joints.get_mut(index)) {
-            add(moving, &placement, &link.inertial);
+        if let Some(body) = body.get().checked_sub(1).and_then(|index| joints.get_mut(index)) {
+            let added = placed((mass, com, inertia), &placement);
+            (body.mass, body.com, body.inertia) = joined((body.mass, body.com, body.inertia), added);
         }
-        let inertial = pose(&link.inertial.origin);
-        links.push(LinkDescription {
-            name: link.name.clone(),
-            body,
-            placement,
-            parent: visit.joint.map(|_| LinkIndex::new(visit.parent)),
-            mass: link.inertial.mass.value,
-            com: inertial.translation,
-            inertia: inertial.rotation * tensor(&link.inertial) * inertial.rotation.transpose(),
-            geometry: vec![],
-        });
+        let parent = visit.joint.map(|_| LinkIndex::new(visit.parent));
+        let (name, geometry) = (link.name.clone(), vec![]);
+        links.push(LinkDescription { name, body, placement, parent, mass, com, inertia, geometry });
     }
     let (name, gravity) = (robot.name.clone(), Vector3::zeros());
     RobotDescription { name, joints, links, gravity, warnings: vec![] }
@@ -69,19 +63,8 @@ pub(super) fn bodies(
 /// A URDF origin: `R = Rz(yaw) Ry(pitch) Rx(roll)`.
 pub(super) fn pose(origin: &urdf_rs::Pose) -> Pose {
     let [roll, pitch, yaw] = *origin.rpy;
-    let ((sr, cr), (sp, cp), (sy, cy)) = (roll.sin_cos(), pitch.sin_cos(), yaw.sin_cos());
     Pose {
-        rotation: Matrix3::new(
-            cy * cp,
-            cy * sp * sr - sy * cr,
-            cy * sp * cr + sy * sr,
-            sy * cp,
-            sy * sp * sr + cy * cr,
-            sy * sp * cr - cy * sr,
-            -sp,
-            cp * sr,
-            cp * cr,
-        ),
+        rotation: Rotation3::from_euler_angles(roll, pitch, yaw).into_inner(),
         translation: Vector3::from(*origin.xyz),
     }
 }
@@ -132,7 +115,7 @@ fn joint(urdf: &urdf_rs::Joint, parent: BodyIndex, kind: JointKind, placement: P
     let limited = |value: f64| (value.abs() < UNLIMITED).then_some(value);
     let position = |value: f64| limited(value).filter(|_| kind != JointKind::Continuous);
     let (lower, upper) = (position(urdf.limit.lower), position(urdf.limit.upper));
-    let effort = limited(urdf.limit.effort).filter(|_| has_limit(urdf));
+    let effort = limited(urdf.limit.effort);
     JointDescription {
         parent,
         kind,
@@ -144,22 +127,9 @@ fn joint(urdf: &urdf_rs::Joint, parent: BodyIndex, kind: JointKind, placement: P
     }
 }
 
-/// Whether it has a `<limit>`: `urdf-rs` gives zeros where a continuous joint has none.
-fn has_limit(joint: &urdf_rs::Joint) -> bool {
-    let limit = &joint.limit;
-    [limit.lower, limit.upper, limit.effort, limit.velocity] != [0.0; 4]
-}
-
-/// Adds a link's inertia to a body's; `placement` is the link's in the joint's frame.
-fn add(body: &mut JointDescription, placement: &Pose, inertial: &Inertial) {
-    let frame = placement.compose(&pose(&inertial.origin));
-    let inertia = frame.rotation * tensor(inertial) * frame.rotation.transpose();
-    (body.mass, body.com, body.inertia) =
-        joined((body.mass, body.com, body.inertia), (inertial.mass.value, frame.translation, inertia));
-}
-
-/// The inertia about the link's centre of mass, in the inertial frame's axes.
-pub(super) fn tensor(inertial: &Inertial) -> Matrix3<f64> {
+/// A link's inertia in its frame.
+fn inertia(inertial: &urdf_rs::Inertial) -> Inertia {
     let i = &inertial.inertia;
-    Matrix3::new(i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz)
+    let tensor = Matrix3::new(i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz);
+    placed((inertial.mass.value, Vector3::zeros(), tensor), &pose(&inertial.origin))
 }

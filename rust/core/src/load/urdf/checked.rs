@@ -7,6 +7,7 @@
 
 use std::path::Path;
 
+use super::joints;
 use super::meshes::MeshFinder;
 use super::options::UrdfOptions;
 use super::shapes::{choose_shapes, is_shape, ROLES};
@@ -39,7 +40,6 @@ const DEFAULTS: [(&str, &str, &str); 5] = [
 ];
 /// Far beyond any robot, and small enough that products stay finite.
 const LARGEST: f64 = 1e12;
-const JOINTS: [&str; 5] = ["revolute", "continuous", "prismatic", "fixed", "floating"];
 
 /// Links, whose chosen shapes are all `<collision>`, and joints.
 pub(super) struct Checked {
@@ -67,17 +67,19 @@ pub(super) fn read(path: &Path, options: &UrdfOptions) -> Result<Checked> {
         if element.name().is_empty() {
             return Err(Error::model(format!("a <{}> has no name", element.tag)));
         }
+        joints::complete(element);
         // Shapes are checked after all links and joints.
         for child in element.children.iter_mut().filter(|child| !is_shape(child)) {
             check(child, &owner, Error::model).map_err(|error| error.of(&owner))?;
         }
         keep_first(element);
-        check_joint(element, &owner).map_err(|error| error.of(&owner))?;
+        joints::check(element, &owner).map_err(|error| error.of(&owner))?;
     }
     let mut meshes = MeshFinder::new(path, &options.package_dirs);
     choose_shapes(&mut elements, options, &mut meshes, &mut warnings)?;
     let robot = parse(&elements).map_err(|whole| blame(&elements).unwrap_or(whole))?;
     check_names(&elements, &robot)?;
+    warnings.extend(joints::oddities(&elements));
     let name = attributes.into_iter().find(|(name, _)| name == "name").map(|(_, value)| value);
     let stem = || path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let name = name.filter(|name| !name.is_empty()).unwrap_or_else(stem);
@@ -136,44 +138,6 @@ fn keep_first(element: &mut Element) {
         seen.push(child.tag.clone());
         !again || MANY.contains(&child.tag.as_str())
     });
-}
-
-fn check_joint(joint: &Element, owner: &str) -> Result<()> {
-    if joint.tag != "joint" {
-        return Ok(());
-    }
-    let kind = joint.attribute("type");
-    if !JOINTS.contains(&kind) {
-        let text =
-            format!("{owner} has the type '{kind}'; supported: {} (from the root link)", JOINTS.join(", "));
-        return Err(Error::model(text));
-    }
-    for end in ["parent", "child"] {
-        if joint.child(end).is_none_or(|end| end.attribute("link").is_empty()) {
-            return Err(Error::model(format!("{owner} needs <{end} link=\"...\"/>")));
-        }
-    }
-    if ["revolute", "prismatic"].contains(&kind) && joint.child("limit").is_none() {
-        return Err(Error::model(format!(
-            "{owner} is {kind} and needs <limit> (a revolute joint without limits is 'continuous')"
-        )));
-    }
-    if kind == "fixed" {
-        return Ok(());
-    }
-    let numbers = |tag: &str, name: &str| joint.child(tag).map(|child| child.numbers(name));
-    let axis = numbers("axis", "xyz").unwrap_or_else(|| vec![1.0, 0.0, 0.0]);
-    let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
-    if !(length > 1e-6 && length < 1e6) {
-        let text = format!("{owner}: <axis> must be a direction of about unit length, not {axis:?}");
-        return Err(Error::model(text));
-    }
-    for name in ["effort", "velocity"] {
-        if numbers("limit", name).is_some_and(|values| values.iter().any(|value| *value < 0.0)) {
-            return Err(Error::model(format!("{owner}: '{name}' of <limit> must not be negative")));
-        }
-    }
-    Ok(())
 }
 
 fn parse(elements: &[Element]) -> Result<urdf_rs::Robot> {

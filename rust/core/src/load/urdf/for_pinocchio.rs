@@ -5,7 +5,7 @@ use std::path::Path;
 use super::checked::{self, Checked};
 use super::options::UrdfOptions;
 use super::xml::Element;
-use super::{oddities, shapes, tree};
+use super::{shapes, tree};
 use crate::error::Result;
 use crate::surface::Geometry;
 
@@ -42,9 +42,8 @@ impl CheckedUrdf {
     }
 
     fn read_file(path: &Path, options: &UrdfOptions) -> Result<Self> {
-        let Checked { name, mut elements, robot, mut warnings } = checked::read(path, options)?;
+        let Checked { name, mut elements, robot, warnings } = checked::read(path, options)?;
         tree::visits(&robot, options.floating_base)?;
-        warnings.extend(oddities(&robot));
         let mut shapes = vec![];
         for link in &robot.links {
             for (place, part) in shapes::parts(link)?.into_iter().enumerate() {

@@ -5,6 +5,7 @@
 mod build;
 mod checked;
 mod for_pinocchio;
+mod joints;
 mod lock;
 mod meshes;
 mod options;
@@ -20,11 +21,9 @@ use std::path::Path;
 
 pub use for_pinocchio::CheckedUrdf;
 pub use options::{MissingMeshes, UrdfGeometry, UrdfOptions};
-use urdf_rs::Joint;
 
 use self::checked::Checked;
 use crate::error::{Error, Result};
-use crate::robot::check::list;
 use crate::robot::description::RobotDescription;
 use crate::robot::Robot;
 
@@ -76,7 +75,6 @@ fn read(path: &Path, options: &UrdfOptions) -> Result<RobotDescription> {
     let visits = tree::visits(&robot, options.floating_base)?;
     let locked = lock::by_joint(&robot, "locked_joints", &options.locked_joints)?;
     let armature = lock::by_joint(&robot, "armature", &options.armature)?;
-    warnings.extend(oddities(&robot));
     warnings.extend(lock::outside_limits(&robot, &locked));
     let mut description = build::bodies(&robot, &visits, &locked, options.floating_base);
     for joint in &mut description.joints {
@@ -87,26 +85,6 @@ fn read(path: &Path, options: &UrdfOptions) -> Result<RobotDescription> {
         link.geometry = shapes::parts(&robot.links[visit.link])?;
     }
     Ok(RobotDescription { name, gravity: options.gravity, warnings, ..description })
-}
-
-/// Warnings that name the joints concerned and say what is done about them.
-fn oddities(robot: &urdf_rs::Robot) -> Vec<String> {
-    let mimic =
-        |joint: &Joint| joint.mimic.as_ref().map(|mimic| format!("'{}' ('{}')", joint.name, mimic.joint));
-    let mimics: Vec<String> = tree::moving(robot).filter_map(mimic).collect();
-    let length = |joint: &Joint| joint.axis.xyz.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let long = tree::moving(robot).filter(|joint| (length(joint) - 1.0).abs() > 1e-3);
-    let long: Vec<&str> = long.map(|joint| joint.name.as_str()).collect();
-    let mut warnings = vec![];
-    if !mimics.is_empty() {
-        let mimics = mimics.join(", ");
-        warnings.push(format!("Joints that mimic another (kept as independent joints): {mimics}"));
-    }
-    if !long.is_empty() {
-        let names = list(&long);
-        warnings.push(format!("The axes of these joints are not of unit length (normalised): {names}"));
-    }
-    warnings
 }
 
 impl Robot {

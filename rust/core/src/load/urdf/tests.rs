@@ -128,6 +128,20 @@ fn a_floating_base_carries_the_root_link() {
 }
 
 #[test]
+fn a_limit_of_zero_is_no_missing_limit() {
+    let effort = |limit: &str| {
+        let turning = joint("wheel", "continuous", "base", "rim", limit);
+        let wheel =
+            read(&robot(&[link("base", ""), link("rim", ""), turning]), &UrdfOptions::default()).unwrap();
+        assert_eq!((wheel.joints[0].lower, wheel.joints[0].upper), (None, None));
+        wheel.joints[0].effort
+    };
+    assert_eq!(effort(""), None);
+    assert_eq!(effort(r#"<limit velocity="2"/>"#), None);
+    assert_eq!(effort(r#"<limit lower="0" upper="0" effort="0" velocity="0"/>"#), Some(0.0));
+}
+
+#[test]
 fn locked_joints_merge() {
     let locked = vec![("rail".into(), 0.5), ("a_left".into(), 0.0), ("z_right".into(), 9.0)];
     let options = UrdfOptions { locked_joints: locked, floating_base: true, ..UrdfOptions::default() };

@@ -19,8 +19,6 @@ pub(super) use mass_matrix::check_mass_matrix;
 
 /// Smallest mass (kg) and moment of inertia (kg m^2) that is not zero: computing with less loses its digits.
 const LEAST_INERTIA: f64 = 1e-60;
-/// Largest entry of `R^T R - 1` of a rotation R: above the rounding of rotations in single precision.
-const NOT_RIGID: f64 = 1e-5;
 
 /// Refuses joints and links that cannot be used, and returns warnings of those that are odd.
 pub(super) fn check(description: &RobotDescription) -> Result<Vec<String>> {
@@ -96,21 +94,7 @@ fn check_link(owner: &str, link: &LinkDescription, joints: usize) -> Result<()> 
 }
 
 fn check_placement(owner: &str, placement: &Pose) -> Result<()> {
-    if !placement.rotation.iter().chain(&placement.translation).all(|x| x.is_finite()) {
-        return Err(Error::model(format!(
-            "{owner}: its placement is not finite; check the magnitudes in the description"
-        )));
-    }
-    let rotation = &placement.rotation;
-    let off = (rotation.tr_mul(rotation) - Matrix3::identity()).amax();
-    if off > NOT_RIGID || rotation.determinant() < 0.0 {
-        return Err(Error::model(format!(
-            "{owner}: its placement must be a rotation and a translation; the rotation's columns are off \
-             orthonormal by {off:.1e}, its determinant is {:.3}",
-            rotation.determinant()
-        )));
-    }
-    Ok(())
+    placement.check_rigid().map_err(|why| Error::model(format!("{owner}: its placement {why}")))
 }
 
 fn check_size(owner: &str, mass: f64, inertia: &Matrix3<f64>) -> Result<()> {

@@ -61,8 +61,8 @@ fn bad_sensors_are_named() {
         (vec![sensor("A", "base")], "fixed to the world"),
         (vec![sensor("A", "a"), sensor("A", "b")], "named 'A'"),
         (vec![sensor("A", "a"), sensor("B", "a")], "both sit at link 'a'"),
-        (vec![ForceTorqueSensor { pose: skewed, ..sensor("A", "a") }], "rigid"),
-        (vec![ForceTorqueSensor { pose: far, ..sensor("A", "a") }], "rigid"),
+        (vec![ForceTorqueSensor { pose: skewed, ..sensor("A", "a") }], "the pose of 'A' must be a rotation"),
+        (vec![ForceTorqueSensor { pose: far, ..sensor("A", "a") }], "the pose of 'A' is not finite"),
     ];
     for (sensors, part) in cases {
         match SensorTree::new(&robot(), &sensors) {

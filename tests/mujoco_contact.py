@@ -18,16 +18,19 @@ import pinocchio as pin
 
 from contactsense import Robot
 from contactsense.errors import InputError
-
-from ._arrays import FloatArray, not_negative, positive
-from ._mujoco import mujoco
-from ._text import pose_attributes, text
-from .arm import SimulatedRobot
-from .geoms import Geom
-from .mjcf import mjcf_tree
-from .noise import TorqueNoise
-from .obstacles import CubeObstacle, Obstacle, SphereObstacle
-from .penalty import ContactForce
+from contactsense.sim import (
+    ContactForce,
+    CubeObstacle,
+    Geom,
+    Obstacle,
+    SimulatedRobot,
+    SphereObstacle,
+    TorqueNoise,
+    mjcf_tree,
+)
+from contactsense.sim._arrays import FloatArray, not_negative, positive
+from contactsense.sim._mujoco import mujoco
+from contactsense.sim._text import pose_attributes, text
 
 _IMPEDANCE = 0.01
 _OBSTACLE = "obstacle"
