@@ -1,0 +1,75 @@
+"""Friction of joints."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from contactsense.errors import InputError
+
+from ._arrays import FloatArray, not_negative, positive
+from .per_joint import PerJoint, kept, spread
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Coulomb, viscous and Stribeck friction, one number for all joints or one for each.
+
+    The motor has to give `(coulomb + stribeck exp(-(v / stribeck_velocity)^2)) s + viscous v` on top of the
+    rest. `s` is the direction of the motion: `tanh(v / sign_velocity)`, or with `presliding` a state that
+    follows the position as in Dahl's model and therefore stays at rest, as the friction of real gears does.
+    """
+
+    coulomb: PerJoint = 0.0  # [Nm; N for a sliding joint]
+    viscous: PerJoint = 0.0  # [Nm s/rad; N s/m]
+    stribeck: PerJoint = 0.0  # what breaking away needs above Coulomb friction [Nm; N]
+    stribeck_velocity: float = 0.1  # at which 37 % of it is left [rad/s; m/s]
+    # Slow against any motion of an arm, so that Coulomb friction is a step, and fast against what 17-bit
+    # encoders mistake for motion [rad/s; m/s].
+    sign_velocity: float = 0.01
+    # Travel in which the direction turns, 0 for tanh [rad; m]. Gears need about 1 mrad.
+    presliding: float = 0.0
+    # Share of it that measured torques contain: 1 for motor currents, which overcome all of it; 0 for a
+    # sensor between gear and link; something between where seals and bearings lie behind the sensor.
+    seen: PerJoint = 1.0
+
+    def __post_init__(self) -> None:
+        for name in ("coulomb", "viscous", "stribeck", "seen"):
+            object.__setattr__(self, name, kept(f"friction.{name}", getattr(self, name), lowest=0.0))
+        if np.max(self.seen) > 1.0:
+            raise InputError("friction.seen: must be a share from 0 to 1")
+        positive("friction.stribeck_velocity", self.stribeck_velocity)
+        positive("friction.sign_velocity", self.sign_velocity)
+        not_negative("friction.presliding", self.presliding)
+
+    def torque(self, angles: FloatArray, v: FloatArray) -> FloatArray:
+        """(n, nv) what the motors have to give to overcome it, at `angles` and velocities `v` (n, nv)."""
+        nv = v.shape[1]
+        if self.presliding > 0.0:
+            direction = dahl_state(angles, self.presliding)
+        else:
+            direction = np.tanh(v / self.sign_velocity)
+        breakaway = np.exp(-np.square(v / self.stribeck_velocity))
+        coulomb, viscous, stribeck = (
+            spread(f"friction.{name}", getattr(self, name), nv) for name in ("coulomb", "viscous", "stribeck")
+        )
+        torque: FloatArray = (coulomb + stribeck * breakaway) * direction + viscous * v
+        return torque
+
+    def share_seen(self, nv: int) -> FloatArray:
+        """(nv,) of `seen`."""
+        return spread("friction.seen", self.seen, nv)
+
+
+def dahl_state(angles: FloatArray, travel: float) -> FloatArray:
+    """(n, nv) direction of motion between -1 and 1 (Dahl 1968): `dz = (1 - z sign(dx)) dx / travel`, from 0.
+
+    Each step is solved exactly for a motion in one direction, so that it is stable for any length of a step.
+    """
+    steps = np.diff(angles, axis=0, prepend=angles[:1])
+    target, remain = np.sign(steps), np.exp(-np.abs(steps) / travel)
+    state = np.zeros_like(angles)
+    for row in range(1, len(angles)):
+        state[row] = target[row] + (state[row - 1] - target[row]) * remain[row]
+    return state
