@@ -12,8 +12,6 @@ from ._arrays import FloatArray
 
 # Poses that tell which pairs of shapes are drawn into each other, and the share of them that does.
 _POSES, _ALWAYS = 30, 0.8
-# Half extents of the floor, wider than any arm reaches [m].
-_FLOOR_SIZE, _FLOOR_DEPTH = 10.0, 0.5
 
 
 class Clearance:
@@ -41,14 +39,13 @@ class Clearance:
             if joints[i] != joints[j] and parents[joints[i]] != joints[j] and parents[joints[j]] != joints[i]
         ]
         if floor is not None:
-            box = coal.Box(2.0 * _FLOOR_SIZE, 2.0 * _FLOOR_SIZE, 2.0 * _FLOOR_DEPTH)
-            height = np.array([0.0, 0.0, floor - _FLOOR_DEPTH])
-            self._add("floor", 0, pin.SE3(np.eye(3), height), box)
+            ground = coal.Halfspace(np.array([0.0, 0.0, 1.0]), floor)
+            self._add("floor", 0, pin.SE3.Identity(), ground)
             pairs += [(i, len(joints)) for i, joint in enumerate(joints) if joint > 0 and parents[joint] > 0]
         for i, j in pairs:
             self._shapes.addCollisionPair(pin.CollisionPair(i, j))
         self._contacts = self._shapes.createData()
-        self._leave_out_overlaps(robot, pairs)
+        self._leave_out_overlaps(robot, links=len(joints))
 
     def free(self, poses: FloatArray) -> bool:
         """Whether nothing touches in any of `poses` (n, nq)."""
@@ -61,14 +58,15 @@ class Clearance:
     def _add(self, name: str, joint: int, placement: pin.SE3, geometry: coal.CollisionGeometry) -> None:
         self._shapes.addGeometryObject(pin.GeometryObject(name, joint, placement, geometry))
 
-    def _leave_out_overlaps(self, robot: Robot, pairs: list[tuple[int, int]]) -> None:
+    def _leave_out_overlaps(self, robot: Robot, links: int) -> None:
+        pairs = [(int(pair.first), int(pair.second)) for pair in self._shapes.collisionPairs]
         count = np.zeros(len(pairs))
         for seed in range(_POSES):
             pose = robot.random_configuration(seed)
             pin.computeCollisions(self._model, self._data, self._shapes, self._contacts, pose, False)
             count += [result.isCollision() for result in self._contacts.collisionResults]
         for (i, j), times in zip(pairs, count, strict=True):
-            if times >= _ALWAYS * _POSES:
+            if times >= _ALWAYS * _POSES and j < links:
                 self._shapes.removeCollisionPair(pin.CollisionPair(i, j))
         self._contacts = self._shapes.createData()
 

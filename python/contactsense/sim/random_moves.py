@@ -15,6 +15,8 @@ from .joint_motion import JointAngles, JointMotion
 _PEAK_SPEED, _PEAK_ACCELERATION = 1.875, 5.7735
 # Arms reach their top speed in about this time [s].
 _SPEED_UP = 0.4
+# A move of a slow arm goes less far, so that there are several in a scene [s].
+_LONGEST_MOVE = 4.0
 # Where a description gives no limit of the speed [rad/s; m/s].
 _SPEED = 2.0
 # Share of the range that is kept free at either end, and the longest way of a joint in a move [rad; m]: arms
@@ -70,10 +72,12 @@ def random_moves(
     while row < len(time):
         way = _way(rng, angles_of, clearance, here, low, high)
         share = rng.uniform(*speed)
-        longest = np.abs(way)
+        at_full_speed = np.abs(way) / (share * limits)
+        way *= min(1.0, _LONGEST_MOVE / max(_PEAK_SPEED * float(at_full_speed.max()), dt))
+        at_full_speed = np.abs(way) / (share * limits)
         duration = max(
-            float((_PEAK_SPEED * longest / (share * limits)).max()),
-            float(np.sqrt(_PEAK_ACCELERATION * longest * _SPEED_UP / (share * limits)).max()),
+            _PEAK_SPEED * float(at_full_speed.max()),
+            float(np.sqrt(_PEAK_ACCELERATION * _SPEED_UP * at_full_speed.max())),
         )
         # A move and the rest after it; a way of zero is a rest as well.
         rows = slice(row, row + max(2, round((duration + rng.uniform(*rest)) / dt)))
