@@ -1,4 +1,4 @@
-"""Simulated robots with MuJoCo, to try out touch sensing where the truth is known."""
+"""Simulated robots, with MuJoCo or in closed form, to try out touch sensing where the truth is known."""
 
 from .arm import SimulatedRobot
 from .contact_path import ContactPath, Pace, PathPoint

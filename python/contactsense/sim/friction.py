@@ -14,24 +14,34 @@ from .per_joint import PerJoint, kept, spread
 
 @dataclass(frozen=True)
 class Friction:
-    """Coulomb, viscous and Stribeck friction, one number for all joints or one for each.
+    """Coulomb, viscous and Stribeck friction, one number for all joints or (nv,) for one each.
 
     The motor has to give `(coulomb + stribeck exp(-(v / stribeck_velocity)^2)) s + viscous v` on top of the
     rest. `s` is the direction of the motion: `tanh(v / sign_velocity)`, or with `presliding` a state that
     follows the position as in Dahl's model and therefore stays at rest, as the friction of real gears does.
+    For sliding joints, read N for Nm and m for rad.
+
+    Args:
+        coulomb: [Nm].
+        viscous: [Nm s/rad].
+        stribeck: what breaking away takes above Coulomb friction [Nm].
+        stribeck_velocity: at which 37 % of that is left [rad/s].
+        sign_velocity: slow against any motion of an arm, so that Coulomb friction is a step, yet without the
+            jump that no numerical method likes [rad/s].
+        presliding: travel in which the direction turns [rad], about 1e-3 in gears; 0 for the tanh.
+        seen: share of it that measured torques contain: 1 for motor currents, which overcome all of it; 0 for
+            a sensor between gear and link; between them where seals and bearings lie behind the sensor.
+
+    Raises:
+        InputError: names the setting.
     """
 
-    coulomb: PerJoint = 0.0  # [Nm; N for a sliding joint]
-    viscous: PerJoint = 0.0  # [Nm s/rad; N s/m]
-    stribeck: PerJoint = 0.0  # what breaking away needs above Coulomb friction [Nm; N]
-    stribeck_velocity: float = 0.1  # at which 37 % of it is left [rad/s; m/s]
-    # Slow against any motion of an arm, so that Coulomb friction is a step, and fast against what 17-bit
-    # encoders mistake for motion [rad/s; m/s].
+    coulomb: PerJoint = 0.0
+    viscous: PerJoint = 0.0
+    stribeck: PerJoint = 0.0
+    stribeck_velocity: float = 0.1
     sign_velocity: float = 0.01
-    # Travel in which the direction turns, 0 for tanh [rad; m]. Gears need about 1 mrad.
     presliding: float = 0.0
-    # Share of it that measured torques contain: 1 for motor currents, which overcome all of it; 0 for a
-    # sensor between gear and link; something between where seals and bearings lie behind the sensor.
     seen: PerJoint = 1.0
 
     def __post_init__(self) -> None:

@@ -27,42 +27,65 @@ class ImperfectArm:
     """The errors of one arm: what is wrong in its description and in what it measures.
 
     Values are of this very arm, not distributions: each is what a calibration should find. Two scenes of one
-    arm have the same errors and other noise. One number stands for all joints, an array for one each.
+    arm have the same errors and other noise. Where a setting is "per joint", one number stands for all
+    joints, an array (nv,) for one each. For sliding joints, read N for Nm and m for rad.
 
     Measured torque: `torque_scale h(tau + friction)(t - torque_delay) + torque_bias + noise`, where `h` is
     the hysteresis, `tau` what moves the true robot, rotors included, and `friction` the part of it that the
     sensor sees. Measured position: what the encoder counts. Measured velocity: its differences through a
     low-pass.
+
+    Args:
+        torque_noise: per joint, standard deviation of white noise, new in each row [Nm].
+        torque_bias: per joint, constant [Nm].
+        torque_scale: per joint; negative where the sign is the other way round.
+        torque_delay: per joint [s].
+        hysteresis: per joint, share of a change of torque that stays in the reading after the change is
+            undone, see `with_hysteresis`; gears leave 3 to 8 %.
+        friction: of the joints, and how much of it the torques contain.
+        rotor_inertia: per joint, of the rotor through the gear, as far as the description lacks it and the
+            torque contains it [kg m^2]: motor currents do, a sensor between gear and link does not.
+        mass_error: standard deviation of each body's mass against the description, as a share of it; drawn
+            with `seed`, as the next two (`perturbed_model`).
+        com_error: of each coordinate of its centre of mass [m].
+        inertia_error: of its rotational inertia, as a share, besides what follows from the mass.
+        payload: that the description lacks.
+        encoder_bits: an encoder counts `2^bits` steps a turn, or a metre of a sliding joint; None: exact.
+        velocity_cutoff: corner of each stage of the low-pass on differenced positions [Hz]; a stage is late
+            by `1 / (2 pi cutoff)`. None: the velocity is exact.
+        velocity_order: stages of the low-pass, 1 or 2.
+        velocity_delay: per joint, besides that of the low-pass [s].
+        compliance: per joint, by how much gear and controller give way to an external torque [rad/Nm].
+        dropped_ticks: share of the rows that are missing.
+        drop_length: mean length of a gap [s]; networks lose several ticks in a row.
+        jitter: standard deviation of the error of time stamps [s]. Rows are taken on time, and stamps stay in
+            order.
+        seed: of what is wrong with the masses; the noise comes with a scene's seed.
+
+    Raises:
+        InputError: names the setting.
     """
 
-    torque_noise: PerJoint = 0.0  # standard deviation, white, new in each row [Nm; N for a sliding joint]
-    torque_bias: PerJoint = 0.0  # [Nm; N]
-    torque_scale: PerJoint = 1.0  # negative: the sign is the other way round
-    torque_delay: PerJoint = 0.0  # [s]
-    # Share of a change of torque that stays in the reading after the change is undone; see `with_hysteresis`.
-    # Gears leave 3 to 8 %.
+    torque_noise: PerJoint = 0.0
+    torque_bias: PerJoint = 0.0
+    torque_scale: PerJoint = 1.0
+    torque_delay: PerJoint = 0.0
     hysteresis: PerJoint = 0.0
     friction: Friction = field(default_factory=Friction)
-    # Of the rotor through the gear, as far as the description lacks it and the torque contains it: motor
-    # currents do, a sensor between gear and link does not [kg m^2; kg].
     rotor_inertia: PerJoint = 0.0
-    # Standard deviations of the true robot against the description, drawn with `seed`: see `perturbed_model`.
-    mass_error: float = 0.0  # share of each body's mass
-    com_error: float = 0.0  # of each coordinate of its centre of mass [m]
-    inertia_error: float = 0.0  # share of its rotational inertia, besides what follows from the mass
-    payload: Payload | None = None  # that the description lacks
-    encoder_bits: int | None = None  # steps a turn, or a metre of a sliding joint: 2^bits; None: exact
-    # Corner of each stage of the low-pass on differenced positions [Hz]; None: the velocity is exact.
+    mass_error: float = 0.0
+    com_error: float = 0.0
+    inertia_error: float = 0.0
+    payload: Payload | None = None
+    encoder_bits: int | None = None
     velocity_cutoff: float | None = None
-    velocity_order: int = 1  # stages: 1 or 2
-    velocity_delay: PerJoint = 0.0  # besides that of the low-pass [s]
-    # By how much a joint gives way to an external torque, of its controller and its gear [rad/Nm; m/N].
+    velocity_order: int = 1
+    velocity_delay: PerJoint = 0.0
     compliance: PerJoint = 0.0
-    dropped_ticks: float = 0.0  # share of the rows that are missing
-    drop_length: float = 5e-3  # mean length of a gap [s]; networks lose several ticks in a row
-    # Standard deviation of the error of time stamps [s]; rows are taken on time. Kept within 0.4 of a tick.
+    dropped_ticks: float = 0.0
+    drop_length: float = 5e-3
     jitter: float = 0.0
-    seed: int = 0  # of what is wrong with masses, not of the noise
+    seed: int = 0
 
     def __post_init__(self) -> None:
         for name in (*_AT_LEAST_ZERO, "torque_bias", "torque_scale"):

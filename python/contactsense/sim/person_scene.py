@@ -15,20 +15,35 @@ from .random_moves import random_moves
 
 @dataclass(frozen=True)
 class PersonScene:
-    """Moves and rests of an arm, and a person who pushes it."""
+    """Moves and rests of an arm, and a person who pushes it.
 
-    seconds: float = 60.0  # [s]
-    contacts: int = 15  # 0: only free motion
-    contact_free: float = 10.0  # at the start [s]; what there is of `seconds` if nobody pushes
-    force: tuple[float, float] = (3.0, 60.0)  # [N], see `random_contacts`
-    duration: tuple[float, float] = (0.1, 1.0)  # of a contact [s]
-    friction: float = 0.5  # between person and arm
-    links: tuple[str, ...] | None = None  # that are pushed; None: all that move
-    speed: tuple[float, float] = (0.15, 0.6)  # share of the velocity limits, see `random_moves`
-    rest: tuple[float, float] = (0.2, 3.0)  # after a move [s]
-    floor: float | None = 0.0  # height of the ground [m]
-    dt: float = 1e-3  # [s]
-    seed: int = 0  # of moves, contacts and noise
+    Args:
+        seconds: in all [s].
+        contacts: how many; 0 for free motion alone.
+        contact_free: time without contact at the start [s].
+        force: the largest of a contact, from and to [N]; see `random_contacts`.
+        duration: of a contact, from and to [s].
+        friction: coefficient between person and arm.
+        links: that are pushed; None: all that move.
+        speed: of a move, from and to, as a share of the velocity limits; see `random_moves`.
+        rest: after a move, from and to [s].
+        floor: height of the ground [m]; None: there is none.
+        dt: between rows [s].
+        seed: of moves, contacts and noise.
+    """
+
+    seconds: float = 60.0
+    contacts: int = 15
+    contact_free: float = 10.0
+    force: tuple[float, float] = (3.0, 60.0)
+    duration: tuple[float, float] = (0.1, 1.0)
+    friction: float = 0.5
+    links: tuple[str, ...] | None = None
+    speed: tuple[float, float] = (0.15, 0.6)
+    rest: tuple[float, float] = (0.2, 3.0)
+    floor: float | None = 0.0
+    dt: float = 1e-3
+    seed: int = 0
 
     def record(self, robot: Robot, arm: ImperfectArm) -> ImperfectRun:
         """What `arm` measures in it, with the truth beside it. Same scene, same run.
