@@ -55,6 +55,22 @@ def test_moves_are_smooth_within_limits_and_clear_of_the_floor(name: str) -> Non
             assert (robot.surface(link).vertices @ pose[2, :3] + pose[2, 3]).min() > -0.02
 
 
+@pytest.mark.parametrize("name", parameters(["iiwa14", "panda", "ur5"]))
+def test_links_that_are_far_apart_in_the_chain_do_not_touch(name: str) -> None:
+    robot = robot_named(name)
+    shapes = robot.geometry_model.copy()
+    joint = [int(shape.parentJoint) for shape in shapes.geometryObjects]
+    for j in range(len(joint)):
+        for i in range(j):
+            if abs(joint[i] - joint[j]) >= 3:
+                shapes.addCollisionPair(pin.CollisionPair(i, j))
+    data, found = robot.model.createData(), shapes.createData()
+    motion = sim.random_moves(robot, 60.0, dt=0.02, seed=6)
+    assert not any(pin.computeCollisions(robot.model, data, shapes, found, q, True) for q in motion.q)
+    anywhere = [robot.random_configuration(seed) for seed in range(200)]
+    assert any(pin.computeCollisions(robot.model, data, shapes, found, q, True) for q in anywhere)
+
+
 @pytest.mark.parametrize("name", ARMS)
 def test_contacts_are_pushes_on_the_surface(name: str) -> None:
     robot, truth = robot_named(name), recorded(name).truth
@@ -172,6 +188,7 @@ def test_the_same_seed_is_the_same_scene_of_the_same_arm() -> None:
         ({"mass_error": -0.1}, "mass_error"),
         ({"friction": 0.1}, "friction"),
         ({"payload": 1.0}, "payload"),
+        ({"seed": -1}, "seed"),
     ],
 )
 def test_settings_that_make_no_sense_are_refused(change: dict[str, object], name: str) -> None:
@@ -192,15 +209,16 @@ def test_what_does_not_fit_the_robot_is_refused() -> None:
     with pytest.raises(cs.InputError, match=r"contacts\[0\]"):
         sim.record_imperfect(IIWA, sim.ImperfectArm(), motion, [late])
     for options, name in (
-        ({"count": 5}, "count"),
-        ({"count": 1, "links": ["none"]}, "links"),
-        ({"count": 1, "force": (5.0, 3.0)}, "force"),
-        ({"count": 1, "friction": -1.0}, "friction"),
+        ({"contacts": 5}, "contacts"),
+        ({"contacts": 1, "links": ["none"]}, "links"),
+        ({"contacts": 1, "force": (5.0, 3.0)}, "force"),
+        ({"contacts": 1, "friction": -1.0}, "friction"),
     ):
         with pytest.raises(cs.InputError, match=name):
             sim.random_contacts(IIWA, motion, **options)  # type: ignore[arg-type]
     for options, name in (
         ({"seconds": 0.0}, "seconds"),
+        ({"seed": 0.5}, "seed"),
         ({"speed": (0.5, 1.5)}, "speed"),
         ({"floor": 5.0}, "floor"),
     ):

@@ -9,7 +9,7 @@ import numpy as np
 from contactsense import Robot
 from contactsense.errors import InputError
 
-from ._arrays import FloatArray, not_negative, positive
+from ._arrays import FloatArray, not_negative, positive, whole
 from .disturbance import perturbed_model
 from .friction import Friction
 from .joint_size import rated_torque
@@ -98,6 +98,7 @@ class ImperfectArm:
         if self.dropped_ticks >= 1.0:
             raise InputError(f"dropped_ticks: must be a share below 1, not {self.dropped_ticks}")
         positive("drop_length", self.drop_length)
+        whole("seed", self.seed)
         if self.encoder_bits not in (None, *range(1, _FINEST + 1)):
             raise InputError(
                 f"encoder_bits: must be a whole number from 1 to {_FINEST}, or None, not {self.encoder_bits}"

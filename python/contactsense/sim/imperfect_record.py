@@ -13,7 +13,7 @@ from contactsense import Robot
 from contactsense.errors import InputError
 from contactsense.log import Log
 
-from ._arrays import FloatArray
+from ._arrays import FloatArray, whole
 from .imperfect_arm import ImperfectArm
 from .imperfect_run import ImperfectRun, RecordedContact, Truth
 from .joint_motion import JointAngles, JointMotion
@@ -48,6 +48,7 @@ def record_imperfect(
     Raises:
         InputError: names the argument.
     """
+    whole("seed", seed)
     angles_of = JointAngles(robot.model)
     if motion.q.shape[1] != robot.nq or motion.v.shape[1] != robot.nv or motion.a.shape[1] != robot.nv:
         raise InputError(f"motion: must have q (n, {robot.nq}), v and a (n, {robot.nv})")
@@ -58,7 +59,7 @@ def record_imperfect(
     true_robot = arm.true_robot(robot)
     motion = _give_way(robot, arm, angles_of, motion, pushes)
     external, contact, records = _contacts(robot, motion, pushes)
-    tau = inverse_dynamics(true_robot.model, motion) - external
+    tau = _inverse_dynamics(true_robot.model, motion) - external
     angles = angles_of.read(motion.q)
     friction = arm.friction.torque(angles, motion.v)
     streams = [np.random.default_rng([seed, stream]) for stream in range(3)]
@@ -84,7 +85,7 @@ def record_imperfect(
     return ImperfectRun(log, truth)
 
 
-def inverse_dynamics(model: pin.Model, motion: JointMotion) -> FloatArray:
+def _inverse_dynamics(model: pin.Model, motion: JointMotion) -> FloatArray:
     """(n, nv) torques that move `model` so, rotors included [Nm]."""
     data = model.createData()
     tau = np.empty_like(motion.v)

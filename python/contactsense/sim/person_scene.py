@@ -68,7 +68,7 @@ class PersonScene:
             robot,
             motion,
             self.contacts,
-            first=self.contact_free if self.contacts else 0.0,
+            contact_free=self.contact_free if self.contacts else 0.0,
             force=self.force,
             duration=self.duration,
             friction=self.friction,

@@ -9,7 +9,7 @@ import numpy as np
 from contactsense import Robot
 from contactsense.errors import InputError
 
-from ._arrays import FloatArray, not_negative
+from ._arrays import FloatArray, not_negative, whole
 from .joint_motion import JointMotion
 from .person_contact import PersonContact
 from .push import random_push
@@ -26,16 +26,16 @@ _ROOM, _TRIES = 0.03, 50
 def random_contacts(
     robot: Robot,
     motion: JointMotion,
-    count: int,
+    contacts: int,
     *,
-    first: float = 0.0,
+    contact_free: float = 0.0,
     force: tuple[float, float] = (3.0, 60.0),
     duration: tuple[float, float] = (0.1, 1.0),
     friction: float = 0.5,
     links: Iterable[str] | None = None,
     seed: int = 0,
 ) -> tuple[PersonContact, ...]:
-    """`count` pushes, one at a time, at points uniform on the surface of moving links, each link as often.
+    """`contacts` pushes, one at a time, at points uniform on the surface of moving links, each link as often.
 
     Points that another link covers when the contact starts are left out. The force is inward, within the
     friction cone, and goes along with the link.
@@ -43,8 +43,8 @@ def random_contacts(
     Args:
         robot: with surfaces.
         motion: that it is pushed during.
-        count: of contacts.
-        first: time without contact at the start [s].
+        contacts: how many.
+        contact_free: time without contact at the start [s].
         force: the largest of a contact [N]; uniform in its logarithm, as weak contacts are the more common.
         duration: [s]; uniform.
         friction: coefficient; directions are uniform in its cone.
@@ -52,18 +52,18 @@ def random_contacts(
         seed: same seed, same contacts.
 
     Raises:
-        InputError: names the argument; `count` if so many contacts do not fit.
+        InputError: names the argument; `contacts` if so many do not fit into the motion.
     """
     ordered("force", force, np.inf)
     ordered("duration", duration, np.inf)
-    not_negative("first", first)
+    not_negative("contact_free", contact_free)
     not_negative("friction", friction)
-    if count < 0 or int(count) != count:
-        raise InputError(f"count: must be a whole number, zero or above, not {count}")
-    names = _links(robot, links)
+    whole("contacts", contacts)
+    whole("seed", seed)
+    names = _links(robot, links) if contacts else ()
     rng = np.random.default_rng([seed, 3])
-    start, lasting = _times(rng, motion, int(count), first, duration)
-    contacts = []
+    start, lasting = _times(rng, motion, contacts, contact_free, duration)
+    found = []
     for begin, length in zip(start, lasting, strict=True):
         link = names[int(rng.integers(len(names)))]
         strength = float(np.exp(rng.uniform(*np.log(force))))
@@ -81,13 +81,15 @@ def random_contacts(
             if _within_reach(robot, q, link, push.point_local, -push.direction):
                 break
         rise = min(float(rng.uniform(*_RISE)) * length, _LONGEST_RISE)
-        contacts.append(PersonContact(link, push.point_local, strength * push.direction, begin, length, rise))
-    return tuple(contacts)
+        found.append(PersonContact(link, push.point_local, strength * push.direction, begin, length, rise))
+    return tuple(found)
 
 
 def _links(robot: Robot, links: Iterable[str] | None) -> tuple[str, ...]:
     model = robot.model
     moving = tuple(name for name in robot.link_names if model.frames[model.getBodyId(name)].parentJoint > 0)
+    if not moving:
+        raise InputError("robot: has no moving link with a surface")
     if links is None:
         return moving
     names = tuple(links)
@@ -102,14 +104,14 @@ def _links(robot: Robot, links: Iterable[str] | None) -> tuple[str, ...]:
 
 
 def _times(
-    rng: np.random.Generator, motion: JointMotion, count: int, first: float, duration: tuple[float, float]
+    rng: np.random.Generator, motion: JointMotion, count: int, free: float, duration: tuple[float, float]
 ) -> tuple[list[float], list[float]]:
     """Starts and lengths [s], in order, with pauses; what time is left is shared out at random."""
     lasting = rng.uniform(*duration, count)
-    begin = float(motion.time[0]) + first
+    begin = float(motion.time[0]) + free
     left = float(motion.time[-1]) - begin - float(lasting.sum()) - _PAUSE * count
     if left < 0.0:
-        raise InputError(f"count: {count} contacts do not fit into the motion after {first} s")
+        raise InputError(f"contacts: {count} do not fit into the motion after contact_free, {free} s")
     waiting = np.sort(rng.uniform(0.0, left, count))
     start = begin + waiting + np.cumsum(lasting) - lasting + _PAUSE * np.arange(count)
     return start.tolist(), lasting.tolist()

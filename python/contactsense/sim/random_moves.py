@@ -7,7 +7,7 @@ import numpy as np
 from contactsense import Robot
 from contactsense.errors import InputError
 
-from ._arrays import FloatArray, positive
+from ._arrays import FloatArray, positive, whole
 from .clearance import Clearance
 from .joint_motion import JointAngles, JointMotion
 
@@ -55,6 +55,7 @@ def random_moves(
     """
     positive("seconds", seconds)
     positive("dt", dt)
+    whole("seed", seed)
     ordered("speed", speed, 1.0)
     ordered("rest", rest, np.inf, zero=True)
     if seconds < 2.0 * dt:
