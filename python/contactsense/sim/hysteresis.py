@@ -16,8 +16,9 @@ def with_hysteresis(torque: FloatArray, share: FloatArray, rated: FloatArray) ->
     """Torques as they come through a gear with hysteresis: `torque + share sum_k (play_k(torque) - torque)`.
 
     A sum of play elements (Prandtl and Ishlinskii): independent of the rate, exact at the first row. When a
-    torque rises by some amount and falls back, `share` of that amount stays, less 1 % of the rated torque and
-    up to 15 % of it; while the torque is there, it reads low by about twice to four times as much.
+    torque rises by `A` and falls back, `share (A - 1 %)` stays, at most `share 15 %`, in shares of the rated
+    torque. At its peak it reads low by `share A` where it is large, and by up to four times that where it is
+    about 1 % of the rated torque: gears are less stiff against small torques.
 
     Args:
         torque: (n, nv) [Nm].

@@ -126,7 +126,7 @@ class ImperfectArm:
         finer in Nm (0.07, 0.017 and 0.10 Nm at 12 Nm) and coarser as a share of their range. The gear's own
         friction is 5 % of the rated torque, most of which the sensor does not see.
         """
-        rng = np.random.default_rng([seed, 0])
+        rng = np.random.default_rng([whole("seed", seed), 0])
         rated = rated_torque(robot)
         size = np.sqrt(rated / 100.0)
         coulomb = 0.05 * rated * rng.uniform(0.7, 1.3, robot.nv)
@@ -161,7 +161,7 @@ class ImperfectArm:
         As on a UR arm: Coulomb friction 5 % of the rated torque and as much viscous friction at full speed,
         2 % more to break away; rotors that the rated torque alone would accelerate at 150 rad/s^2.
         """
-        rng = np.random.default_rng([seed, 1])
+        rng = np.random.default_rng([whole("seed", seed), 1])
         rated = rated_torque(robot)
         coulomb = 0.05 * rated * rng.uniform(0.7, 1.3, robot.nv)
         return replace(

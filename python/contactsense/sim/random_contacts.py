@@ -19,8 +19,8 @@ from .random_moves import ordered
 _PAUSE = 0.5
 # Rise and fall as a share of the contact, and at most this long [s].
 _RISE, _LONGEST_RISE = (0.2, 0.5), 0.15
-# Room in front of a point that a finger or hand needs [m], and places tried for one that has it.
-_ROOM, _TRIES = 0.03, 50
+# Room in front of a point that a finger or hand needs [m]; places tried for one that has it, and on one link.
+_ROOM, _TRIES, _TRIES_ON_LINK = 0.03, 400, 20
 
 
 def random_contacts(
@@ -37,8 +37,8 @@ def random_contacts(
 ) -> tuple[PersonContact, ...]:
     """`contacts` pushes, one at a time, at points uniform on the surface of moving links, each link as often.
 
-    Points that another link covers when the contact starts are left out. The force is inward, within the
-    friction cone, and goes along with the link.
+    Points that another link covers when the contact starts are left out, and so are links that are covered
+    as a whole. The force is inward, within the friction cone, and goes along with the link.
 
     Args:
         robot: with surfaces.
@@ -52,7 +52,8 @@ def random_contacts(
         seed: same seed, same contacts.
 
     Raises:
-        InputError: names the argument; `contacts` if so many do not fit into the motion.
+        InputError: names the argument; `contacts` if so many do not fit into the motion; `links`
+            if others cover them.
     """
     ordered("force", force, np.inf)
     ordered("duration", duration, np.inf)
@@ -65,10 +66,11 @@ def random_contacts(
     start, lasting = _times(rng, motion, contacts, contact_free, duration)
     found = []
     for begin, length in zip(start, lasting, strict=True):
-        link = names[int(rng.integers(len(names)))]
         strength = float(np.exp(rng.uniform(*np.log(force))))
         q = motion.q[int(np.searchsorted(motion.time, begin))]
-        for _ in range(_TRIES):
+        for attempt in range(_TRIES):
+            if attempt % _TRIES_ON_LINK == 0:
+                link = names[int(rng.integers(len(names)))]
             push = random_push(
                 link,
                 robot.surface(link),
@@ -80,6 +82,8 @@ def random_contacts(
             )
             if _within_reach(robot, q, link, push.point_local, -push.direction):
                 break
+        else:
+            raise InputError(f"links: no point of {', '.join(names)} is within reach at {begin:.3f} s")
         rise = min(float(rng.uniform(*_RISE)) * length, _LONGEST_RISE)
         found.append(PersonContact(link, push.point_local, strength * push.direction, begin, length, rise))
     return tuple(found)
