@@ -1,4 +1,4 @@
-"""Simulated robots with MuJoCo, to try out touch sensing where the truth is known."""
+"""Simulated robots, with MuJoCo or in closed form, to try out touch sensing where the truth is known."""
 
 from .arm import SimulatedRobot
 from .contact_path import ContactPath, Pace, PathPoint
@@ -8,15 +8,26 @@ from .deepest import ContactQuery, DeepestPoint
 from .disturbance import TorqueError, perturbed_model
 from .exploration import joint_exploration, null_space_exploration, sliding_exploration
 from .floor import FLOOR_TYPE, Floor
+from .friction import Friction
 from .geoms import Geom, geoms_of, named_geoms
 from .impedance import HandImpedanceController, ImpedanceController
+from .imperfect_arm import ImperfectArm
+from .imperfect_record import record_imperfect
+from .imperfect_run import ImperfectRun, RecordedContact, Truth
+from .joint_motion import JointMotion
+from .joint_size import rated_torque
 from .measurement import Measurement
 from .mjcf import mjcf_string, mjcf_tree
 from .noise import TorqueNoise, WrenchNoise
 from .obstacles import CubeObstacle, CylinderObstacle, Obstacle, SphereObstacle, obstacle_from_dict
+from .payload import Payload
 from .penalty import ContactForce, PenaltyContact, joint_torque
+from .person_contact import PersonContact
+from .person_scene import PersonScene
 from .push import Push, random_push
 from .quasi_static import record_quasi_static
+from .random_contacts import random_contacts
+from .random_moves import random_moves
 from .record import record_run
 from .run import ContactRun
 from .scene import TouchScene, touch_scene
@@ -35,15 +46,23 @@ __all__ = [
     "CylinderObstacle",
     "DeepestPoint",
     "Floor",
+    "Friction",
     "Geom",
     "HandImpedanceController",
     "ImpedanceController",
+    "ImperfectArm",
+    "ImperfectRun",
+    "JointMotion",
     "Measurement",
     "Obstacle",
     "Pace",
     "PathPoint",
+    "Payload",
     "PenaltyContact",
+    "PersonContact",
+    "PersonScene",
     "Push",
+    "RecordedContact",
     "SimulatedRobot",
     "SineTrajectory",
     "Sole",
@@ -53,6 +72,7 @@ __all__ = [
     "TorqueNoise",
     "TouchScene",
     "TrajectoryPoint",
+    "Truth",
     "WrenchNoise",
     "geoms_of",
     "joint_exploration",
@@ -63,7 +83,11 @@ __all__ = [
     "null_space_exploration",
     "obstacle_from_dict",
     "perturbed_model",
+    "random_contacts",
+    "random_moves",
     "random_push",
+    "rated_torque",
+    "record_imperfect",
     "record_quasi_static",
     "record_run",
     "sliding_exploration",

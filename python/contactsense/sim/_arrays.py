@@ -61,6 +61,13 @@ def not_negative(name: str, value: float) -> float:
     return float(value)
 
 
+def whole(name: str, value: int) -> int:
+    """A whole number, zero or above."""
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 0:
+        raise InputError(f"{name} must be a whole number, zero or above, not {value!r}")
+    return int(value)
+
+
 def gains(name: str, value: ArrayLike, size: int) -> FloatArray:
     """One gain for all, or one for each of `size`; zero or above."""
     array = vector(name, np.broadcast_to(np.asarray(value, dtype=np.float64), (size,)), size)
