@@ -13,9 +13,13 @@ use crate::surface::{RayHit, Surface};
 /// Least distance of a link from others and from the ground (m).
 const CLEARANCE: f64 = 0.01;
 /// Larger distances need not be known (m).
-const FAR: f64 = 0.15;
+const FAR: f64 = 0.2;
+/// Beyond so much more than is needed, a lower bound of a distance will do (m).
+const ROUGH: f64 = 0.03;
+/// Instants of a move that are looked at first.
+const COARSE: u32 = 12;
 /// Steps along a motion are at least so long (m), so that their number is bounded.
-const SHORTEST_STEP: f64 = 0.003;
+const SHORTEST_STEP: f64 = 0.005;
 /// Random poses that show which links always touch.
 const PROBES: u64 = 40;
 /// A pair that is too near in more of the poses touches by design.
@@ -23,19 +27,21 @@ const ALWAYS: f64 = 0.9;
 /// Crossings of a line with a surface that are looked at.
 const HITS: usize = 64;
 
-/// A link whose samples are measured against the surface of another one.
+/// What must be far from what.
 #[derive(Debug, Clone, Copy)]
-struct Pair {
-    sampled: usize,
-    other: usize,
+enum Between {
+    /// Samples of a link and the surface of another one.
+    Links { sampled: usize, other: usize },
+    /// Samples of a link and the ground.
+    Ground { sampled: usize },
 }
 
-/// Ground: heights along `up` are to stay above `height` (m).
+/// A distance to be kept.
 #[derive(Debug, Clone)]
-struct Ground {
-    up: Vector3<f64>,
-    height: f64,
-    links: Vec<usize>,
+struct Check {
+    between: Between,
+    /// Joints that change it, and by how much at most (m per rad, m per m).
+    levers: Vec<(usize, f64)>,
 }
 
 /// What is checked of a robot with a fixed base, and space for it.
@@ -43,12 +49,11 @@ struct Ground {
 pub(super) struct Clearance {
     links: Vec<LinkIndex>,
     covers: Vec<Cover>,
-    pairs: Vec<Pair>,
-    ground: Option<Ground>,
+    checks: Vec<Check>,
     /// Pairs that touch by design.
     touching: Vec<(usize, usize)>,
-    /// Largest distance of a point from each joint's axis (m; 1 for a sliding joint).
-    reach: Vec<f64>,
+    up: Vector3<f64>,
+    ground: f64,
     kinematics: Kinematics,
     poses: Vec<Pose>,
     q: Vec<f64>,
@@ -57,17 +62,17 @@ pub(super) struct Clearance {
 impl Clearance {
     pub fn new(robot: &Robot, limits: &Limits, stream: Stream) -> Self {
         let links = robot.touchable_links().to_vec();
-        let covers: Vec<Cover> = links.iter().map(|link| Cover::new(surface(robot, *link))).collect();
+        let (up, ground) = ground(robot, &links).unwrap_or((Vector3::z(), f64::NEG_INFINITY));
         let mut clearance = Clearance {
+            covers: links.iter().map(|link| Cover::new(surface(robot, *link))).collect(),
             poses: vec![Pose::identity(); links.len()],
-            pairs: all_pairs(robot, &links),
-            ground: ground(robot, &links),
+            checks: checks(robot, limits, &links, ground.is_finite()),
             touching: vec![],
-            reach: reach(robot, limits),
+            up,
+            ground,
             kinematics: Kinematics::new(robot),
             q: vec![],
             links,
-            covers,
         };
         clearance.leave_out_what_touches(robot, limits, stream);
         clearance
@@ -90,95 +95,108 @@ impl Clearance {
 
     /// Whether a pose is clear; also where a link is inside another one.
     pub fn allows_pose(&mut self, robot: &Robot, positions: &[f64]) -> bool {
-        self.set(robot, positions);
-        self.distance(robot) > 0.0 && !self.pairs.iter().any(|pair| self.is_inside(robot, *pair))
+        self.set(robot, positions.iter().copied());
+        !self.checks.iter().any(|check| self.violates(robot, check.between))
     }
 
     /// Whether a move is clear that starts where a pose is.
     pub fn allows_move(&mut self, robot: &Robot, part: &Move) -> bool {
-        let speeds = (0..robot.nv()).map(|joint| part.peak_speed(joint) * self.reach[joint]);
-        let speed: f64 = speeds.sum();
-        let mut time = 0.0;
-        loop {
-            let positions: Vec<f64> = (0..robot.nv()).map(|joint| part.joint(joint, time)[0]).collect();
-            self.set(robot, &positions);
-            let distance = self.distance(robot);
-            if distance <= 0.0 {
+        // Most moves that are not clear are found by these.
+        for step in 1..=COARSE {
+            self.set_at(robot, part, part.duration * f64::from(step) / f64::from(COARSE));
+            if self.checks.iter().any(|check| self.distance(robot, check.between, 0.0) < 0.0) {
                 return false;
             }
-            if time >= part.duration || speed == 0.0 {
-                return true;
-            }
-            // No two points come nearer to each other than by this.
-            time = (time + distance.max(SHORTEST_STEP) / speed).min(part.duration);
         }
+        let speeds: Vec<f64> = (0..robot.nv()).map(|joint| part.peak_speed(joint)).collect();
+        (0..self.checks.len()).all(|check| self.stays_clear(robot, part, &speeds, check))
     }
 
-    fn set(&mut self, robot: &Robot, positions: &[f64]) {
-        configuration(robot, positions.iter().copied(), &mut self.q);
+    /// Whether a distance is kept throughout a move: by steps within which it cannot be used up.
+    fn stays_clear(&mut self, robot: &Robot, part: &Move, speeds: &[f64], check: usize) -> bool {
+        let Check { between, levers } = &self.checks[check];
+        let (between, speed) =
+            (*between, levers.iter().map(|(joint, lever)| speeds[*joint] * lever).sum::<f64>());
+        let mut time = 0.0;
+        while speed > 0.0 && time < part.duration {
+            self.set_at(robot, part, time);
+            let distance = self.distance(robot, between, FAR);
+            if distance < 0.0 {
+                return false;
+            }
+            time += distance.max(SHORTEST_STEP) / speed;
+        }
+        true
+    }
+
+    fn set_at(&mut self, robot: &Robot, part: &Move, time: f64) {
+        self.set(robot, (0..robot.nv()).map(|joint| part.joint(joint, time)[0]));
+    }
+
+    fn set(&mut self, robot: &Robot, positions: impl Iterator<Item = f64>) {
+        configuration(robot, positions, &mut self.q);
         self.kinematics.set_configuration(robot, &self.q);
         for (pose, link) in self.poses.iter_mut().zip(&self.links) {
             *pose = self.kinematics.link_pose(robot, *link);
         }
     }
 
-    /// What is left of the clearance, at most `FAR` (m).
-    fn distance(&self, robot: &Robot) -> f64 {
-        let mut least = FAR;
-        for pair in &self.pairs {
-            least = least.min(self.pair_distance(robot, *pair, least));
-            if least <= 0.0 {
-                return least;
-            }
-        }
-        if let Some(ground) = &self.ground {
-            for &link in &ground.links {
-                least = least.min(self.height(ground, link, least));
-            }
-        }
-        least
+    fn violates(&self, robot: &Robot, between: Between) -> bool {
+        let inside = |sampled, other| self.is_inside(robot, sampled, other);
+        self.distance(robot, between, 0.0) < 0.0
+            || matches!(between, Between::Links { sampled, other } if inside(sampled, other) || inside(other, sampled))
     }
 
-    /// The same of a pair, or `least` where that is less.
-    fn pair_distance(&self, robot: &Robot, pair: Pair, least: f64) -> f64 {
-        let cover = &self.covers[pair.sampled];
-        let other = surface(robot, self.links[pair.other]);
-        let [sampled, beyond] = [pair.sampled, pair.other].map(|link| &self.poses[link]);
-        let bounds = |link: usize| {
-            let (center, radius) = surface(robot, self.links[link]).bounding_sphere();
-            (self.poses[link].transform_point(&center), radius)
-        };
-        let needed = CLEARANCE + cover.hole;
-        let [(a, r), (b, s)] = [pair.sampled, pair.other].map(bounds);
-        let mut least = least + needed;
-        if (a - b).norm() - r - s > least {
-            return least - needed;
+    /// What is left of the clearance (m), or less than that where it is more than `enough`.
+    fn distance(&self, robot: &Robot, between: Between, enough: f64) -> f64 {
+        match between {
+            Between::Links { sampled, other } => self.distance_of_links(robot, [sampled, other], enough),
+            Between::Ground { sampled } => self.height(sampled),
         }
+    }
+
+    fn distance_of_links(&self, robot: &Robot, [sampled, other]: [usize; 2], enough: f64) -> f64 {
+        let cover = &self.covers[sampled];
+        let needed = CLEARANCE + cover.hole;
+        let [one, beyond] = [sampled, other].map(|link| surface(robot, self.links[link]));
+        // Samples in the frame of the other link.
+        let place = |point: &Vector3<f64>| {
+            self.poses[other].inverse_transform_point(&self.poses[sampled].transform_point(point))
+        };
+        let [(a, r), (b, s)] = [one, beyond].map(Surface::bounding_sphere);
+        let apart = (place(&a) - b).norm() - r - s;
+        let mut least = enough + needed;
+        if apart > least {
+            return apart - needed;
+        }
+        let mut triangle = None;
         for group in &cover.groups {
-            let center = beyond.inverse_transform_point(&sampled.transform_point(&group.center));
-            if (center - other.bounding_sphere().0).norm() - s - group.radius > least {
+            let center = place(&group.center);
+            if (center - b).norm() - s - group.radius > least {
                 continue;
             }
-            let near = other.closest_point(&center);
-            if near.distance - group.radius > least {
+            let (distance, near) = beyond.distance_within(&center, least + group.radius, triangle);
+            if distance - group.radius >= least.min(needed + ROUGH) {
+                least = least.min(distance - group.radius);
                 continue;
             }
-            let mut triangle = near.triangle;
+            triangle = near;
             for point in &group.points {
-                let point = beyond.inverse_transform_point(&sampled.transform_point(point));
-                let near = other.closest_point_from(&point, triangle);
-                triangle = near.triangle;
-                least = least.min(near.distance);
+                let (distance, near) = beyond.distance_within(&place(point), least, triangle);
+                least = distance;
+                triangle = near.or(triangle);
+                if least < needed {
+                    return least - needed;
+                }
             }
         }
         least - needed
     }
 
-    /// The same of a link and the ground.
-    fn height(&self, ground: &Ground, link: usize, least: f64) -> f64 {
+    fn height(&self, link: usize) -> f64 {
         let pose = &self.poses[link];
-        let mut least = least + CLEARANCE;
-        let above = |point: &Vector3<f64>| ground.up.dot(&pose.transform_point(point)) - ground.height;
+        let above = |point: &Vector3<f64>| self.up.dot(&pose.transform_point(point)) - self.ground;
+        let mut least = f64::INFINITY;
         for group in &self.covers[link].groups {
             if above(&group.center) - group.radius < least {
                 least = group.points.iter().map(above).fold(least, f64::min);
@@ -188,55 +206,33 @@ impl Clearance {
     }
 
     /// Whether a sample of one link lies inside the other one.
-    fn is_inside(&self, robot: &Robot, pair: Pair) -> bool {
-        [pair, Pair { sampled: pair.other, other: pair.sampled }].into_iter().any(|pair| {
-            let Some(group) = self.covers[pair.sampled].groups.first() else { return false };
-            let world = self.poses[pair.sampled].transform_point(&group.center);
-            let point = self.poses[pair.other].inverse_transform_point(&world);
-            let mut hits: Vec<RayHit> = Vec::with_capacity(HITS);
-            surface(robot, self.links[pair.other]).cast_line_into(&point, &Vector3::z(), 0.0, &mut hits);
-            hits.first().is_some_and(|hit| !hit.entering)
-        })
+    fn is_inside(&self, robot: &Robot, sampled: usize, other: usize) -> bool {
+        let Some(group) = self.covers[sampled].groups.first() else { return false };
+        let world = self.poses[sampled].transform_point(&group.center);
+        let point = self.poses[other].inverse_transform_point(&world);
+        let mut hits: Vec<RayHit> = Vec::with_capacity(HITS);
+        surface(robot, self.links[other]).cast_line_into(&point, &Vector3::z(), 0.0, &mut hits);
+        hits.first().is_some_and(|hit| !hit.entering)
     }
 
-    /// Links that are too near to each other, or to the ground, in almost all poses are so by design.
+    /// What is too near in almost all poses is so by design.
     fn leave_out_what_touches(&mut self, robot: &Robot, limits: &Limits, stream: Stream) {
-        let all = self.pairs.clone();
-        let mut near = vec![0_u64; all.len()];
-        let grounded = self.ground.as_ref().map_or(vec![], |ground| ground.links.clone());
-        let mut low = vec![0_u64; grounded.len()];
+        let mut near = vec![0; self.checks.len()];
         for probe in 0..PROBES {
-            let random = stream.fork(probe);
-            let place = |(joint, [lower, upper]): (usize, &[f64; 2])| {
-                lower + (upper - lower) * random.uniform(joint as u64)
-            };
-            let positions: Vec<f64> = limits.range.iter().enumerate().map(place).collect();
-            self.set(robot, &positions);
-            for (pair, near) in all.iter().zip(&mut near) {
-                let touches = self.pair_distance(robot, *pair, FAR) <= 0.0 || self.is_inside(robot, *pair);
-                *near += u64::from(touches);
-            }
-            if let Some(ground) = &self.ground {
-                for (link, low) in grounded.iter().zip(&mut low) {
-                    *low += u64::from(self.height(ground, *link, FAR) <= 0.0);
-                }
+            self.set(robot, limits.random(&stream.fork(probe)).into_iter());
+            for (check, near) in self.checks.iter().zip(&mut near) {
+                *near += u64::from(self.violates(robot, check.between));
             }
         }
-        let by_design = |count: u64| count as f64 > ALWAYS * PROBES as f64;
-        let split = |keep: bool| {
-            let chosen = all.iter().zip(&near).filter(move |(_, count)| by_design(**count) != keep);
-            chosen.map(|(pair, _)| *pair)
-        };
-        self.pairs = split(true).collect();
-        self.touching =
-            split(false).map(|pair| (pair.sampled.min(pair.other), pair.sampled.max(pair.other))).collect();
-        if let Some(ground) = &mut self.ground {
-            ground.links = grounded
-                .iter()
-                .zip(&low)
-                .filter(|(_, low)| !by_design(**low))
-                .map(|(link, _)| *link)
-                .collect();
+        let checks = std::mem::take(&mut self.checks);
+        for (check, near) in checks.into_iter().zip(near) {
+            match check.between {
+                _ if near as f64 <= ALWAYS * PROBES as f64 => self.checks.push(check),
+                Between::Links { sampled, other } => {
+                    self.touching.push((sampled.min(other), sampled.max(other)))
+                }
+                Between::Ground { .. } => {}
+            }
         }
     }
 }
@@ -254,9 +250,10 @@ fn are_neighbours(robot: &Robot, one: LinkIndex, other: LinkIndex) -> bool {
             || robot.parent_body(other) == one && other != WORLD)
 }
 
-/// All pairs of links that can move towards each other and are no neighbours; the smaller one is sampled.
-fn all_pairs(robot: &Robot, links: &[LinkIndex]) -> Vec<Pair> {
-    let mut pairs = vec![];
+/// All distances that joints change, but between neighbours; the smaller link is sampled.
+fn checks(robot: &Robot, limits: &Limits, links: &[LinkIndex], ground: bool) -> Vec<Check> {
+    let mut checks = vec![];
+    let levers: Vec<Vec<(usize, f64)>> = links.iter().map(|link| levers(robot, limits, *link)).collect();
     for (one, link) in links.iter().enumerate() {
         for (other, beyond) in links.iter().enumerate().skip(one + 1) {
             if robot[*link].body == robot[*beyond].body || are_neighbours(robot, *link, *beyond) {
@@ -264,15 +261,47 @@ fn all_pairs(robot: &Robot, links: &[LinkIndex]) -> Vec<Pair> {
             }
             let larger = surface(robot, *link).area() > surface(robot, *beyond).area();
             let [sampled, other] = if larger { [other, one] } else { [one, other] };
-            pairs.push(Pair { sampled, other });
+            // Joints that move both move them alike.
+            let [a, b] = [sampled, other].map(|link| &levers[link]);
+            let alone = |(joint, _): &&(usize, f64), others: &[(usize, f64)]| {
+                !others.iter().any(|(also, _)| also == joint)
+            };
+            let levers =
+                a.iter().filter(|lever| alone(lever, b)).chain(b.iter().filter(|lever| alone(lever, a)));
+            checks.push(Check {
+                between: Between::Links { sampled, other },
+                levers: levers.copied().collect(),
+            });
+        }
+        if ground && robot[*link].body != WORLD {
+            checks.push(Check { between: Between::Ground { sampled: one }, levers: levers[one].clone() });
         }
     }
-    pairs
+    checks
 }
 
-/// The plane under the lowest point of what is fixed to the world, across gravity. None where there is no such point or no
-/// gravity, or where the robot hangs below it.
-fn ground(robot: &Robot, links: &[LinkIndex]) -> Option<Ground> {
+/// The joints that move a link, and how far at most from their origin its points are (m; 1 for a sliding joint).
+fn levers(robot: &Robot, limits: &Limits, link: LinkIndex) -> Vec<(usize, f64)> {
+    let (center, radius) = surface(robot, link).bounding_sphere();
+    let mut far = robot[link].placement().transform_point(&center).norm() + radius;
+    let mut levers = vec![];
+    for &body in robot.chain(robot[link].body).iter().rev() {
+        let joint = &robot.bodies[body];
+        far += if joint.kind == JointKind::Prismatic {
+            levers.push((joint.idx_v, 1.0));
+            limits.range[joint.idx_v].iter().fold(0.0, |far: f64, position| far.max(position.abs()))
+        } else {
+            levers.push((joint.idx_v, far));
+            0.0
+        };
+        far += joint.placement.translation.norm();
+    }
+    levers
+}
+
+/// The direction up, and the height along it (m) of the lowest point of what is fixed to the world: the plane that the robot
+/// stands on. None where nothing is fixed to the world, without gravity, or where the robot hangs below it.
+fn ground(robot: &Robot, links: &[LinkIndex]) -> Option<(Vector3<f64>, f64)> {
     let up = (-robot.gravity()).try_normalize(1e-6)?;
     let mut kinematics = Kinematics::new(robot);
     kinematics.set_configuration(robot, &robot.neutral());
@@ -284,34 +313,5 @@ fn ground(robot: &Robot, links: &[LinkIndex]) -> Option<Ground> {
     }
     let hangs = |body: usize| up.dot(&(kinematics.bodies[body].position + kinematics.origin)) < height;
     let hanging = (1..robot.body_count()).any(|body| robot.parent_body(body) == WORLD && hangs(body));
-    let moving = (0..links.len()).filter(|link| robot[links[*link]].body != WORLD).collect();
-    (height.is_finite() && !hanging).then_some(Ground { up, height, links: moving })
-}
-
-/// For each joint, the largest distance from its origin to a point that it moves (m); 1 for a sliding joint.
-fn reach(robot: &Robot, limits: &Limits) -> Vec<f64> {
-    let mut beyond = vec![0.0_f64; robot.body_count()];
-    for link in robot.links() {
-        if let Some(surface) = &link.surface {
-            let (center, radius) = surface.bounding_sphere();
-            let far = link.placement.transform_point(&center).norm() + radius;
-            beyond[link.body] = beyond[link.body].max(far);
-        }
-    }
-    for body in (1..robot.body_count()).rev() {
-        let joint = &robot.bodies[body];
-        let slides = joint.kind == JointKind::Prismatic;
-        let slide = if slides {
-            limits.range[joint.idx_v].iter().fold(0.0, |far: f64, x| far.max(x.abs()))
-        } else {
-            0.0
-        };
-        let far = beyond[body] + slide + joint.placement.translation.norm();
-        beyond[joint.parent] = beyond[joint.parent].max(far);
-    }
-    robot.bodies[1..]
-        .iter()
-        .zip(&beyond[1..])
-        .map(|(joint, far)| if joint.kind == JointKind::Prismatic { 1.0 } else { *far })
-        .collect()
+    (height.is_finite() && !hanging).then_some((up, height))
 }

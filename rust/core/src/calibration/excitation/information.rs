@@ -177,11 +177,7 @@ impl Information {
     fn largest_weights(&mut self, robot: &Robot, limits: &Limits, stream: Stream) -> Vec<f64> {
         let mut largest = vec![0.0_f64; robot.nv()];
         for probe in 0..PROBES {
-            let random = stream.fork(probe);
-            let place = |(joint, [lower, upper]): (usize, &[f64; 2])| {
-                lower + (upper - lower) * random.uniform(joint as u64)
-            };
-            let positions: Vec<f64> = limits.range.iter().enumerate().map(place).collect();
+            let positions = limits.random(&stream.fork(probe));
             for (largest, weight) in largest.iter_mut().zip(&self.weights(robot, &positions)) {
                 *largest = largest.max(weight.abs());
             }

@@ -2,6 +2,7 @@
 
 use super::Excitation;
 use crate::error::{Error, Result};
+use crate::math::random::Stream;
 use crate::robot::integrate::working_range;
 use crate::robot::{JointKind, Robot};
 
@@ -67,6 +68,12 @@ impl Limits {
     /// Positions in the middle of the ranges.
     pub fn middle(&self) -> Vec<f64> {
         self.range.iter().map(|[lower, upper]| 0.5 * (lower + upper)).collect()
+    }
+
+    /// Random positions within the ranges.
+    pub fn random(&self, stream: &Stream) -> Vec<f64> {
+        let ranges = self.range.iter().enumerate();
+        ranges.map(|(joint, [lower, upper])| lower + (upper - lower) * stream.uniform(joint as u64)).collect()
     }
 
     /// Whether all positions are within the ranges.

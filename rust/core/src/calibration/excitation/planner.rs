@@ -182,11 +182,7 @@ impl<'a> ExcitationPlanner<'a> {
         let held = self.limits.moves.contains(&false);
         let usual = [vec![0.0; self.robot.nv()], self.limits.middle()];
         let stream = self.stream.fork(3);
-        let random = (0..POSES).map(|number| {
-            let random = stream.fork(number);
-            let range = self.limits.range.iter().enumerate();
-            range.map(|(joint, [low, high])| low + (high - low) * random.uniform(joint as u64)).collect()
-        });
+        let random = (0..POSES).map(|number| self.limits.random(&stream.fork(number)));
         let poses: Vec<Vec<f64>> = usual.into_iter().chain(random).collect();
         let mut best: Option<(f64, Vec<f64>)> = None;
         let mut found = 0;
