@@ -643,6 +643,13 @@ class Motion:
     """A planned motion: where the robot is at each instant, `n` rows at equal distances of time. Read-only.
 
     Velocities and accelerations are the derivatives of the positions, and zero at both ends. Can be pickled and copied.
+
+    Example:
+        >>> import contactsense as cs
+        >>> motion = cs.exciting_motion(cs.Robot.named("iiwa14"), 2.0)
+        >>> q, v, a = motion.at(0.5)
+        >>> len(motion), q.shape
+        (2001, (7,))
     """
 
     def at(self, time: float) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
@@ -658,7 +665,11 @@ class Motion:
             InputError: the time is not a finite number.
         """
     def to_dict(self) -> dict[str, Any]:
-        """The attributes as plain lists."""
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, strings, and lists in place of arrays.
+        """
     def __len__(self) -> int: ...
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property

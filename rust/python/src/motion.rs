@@ -14,6 +14,13 @@ use crate::returned::{numbers, read_only};
 /// A planned motion: where the robot is at each instant, `n` rows at equal distances of time. Read-only.
 ///
 /// Velocities and accelerations are the derivatives of the positions, and zero at both ends. Can be pickled and copied.
+///
+/// Example:
+///     >>> import contactsense as cs
+///     >>> motion = cs.exciting_motion(cs.Robot.named("iiwa14"), 2.0)
+///     >>> q, v, a = motion.at(0.5)
+///     >>> len(motion), q.shape
+///     (2001, (7,))
 #[pyclass(frozen, name = "Motion", module = "contactsense")]
 pub struct PyMotion {
     motion: Motion,
@@ -96,7 +103,10 @@ impl PyMotion {
         Ok((PyArray1::from_vec(py, q), PyArray1::from_vec(py, v), PyArray1::from_vec(py, a)))
     }
 
-    /// The attributes as plain lists.
+    /// All attributes by name.
+    ///
+    /// Returns:
+    ///     Plain Python values: numbers, strings, and lists in place of arrays.
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
         plain_dict(slf.as_any(), &["time", "q", "v", "a", "duration", "unchecked"])
     }

@@ -13,7 +13,7 @@ const FREQUENCY: [f64; 2] = [0.2, 1.2];
 /// Smallest and largest share of the largest speed that a slow move has.
 const SLOW: [f64; 2] = [0.02, 0.15];
 /// Least share of the room for sines that is used.
-const LEAST_WAVES: f64 = 0.5;
+const LEAST_WAVES: f64 = 0.8;
 /// Share of joints that stand still in a fast move, so that others are seen alone.
 const STILL: f64 = 0.15;
 
