@@ -1,4 +1,4 @@
-"""Motion that calibration learns from: limits, collisions and what it excites, judged by Pinocchio and coal."""
+"""Motion that calibration learns from: limits, collisions and excitation, judged by Pinocchio and coal."""
 
 import copy
 import itertools
@@ -78,7 +78,7 @@ def test_no_links_collide(planned):
 
 
 def regressor(model, q, v, a):
-    """Torque by inertial parameters, and by bias, Coulomb and viscous friction and rotor inertia of each joint."""
+    """Torque by inertial parameters, and by bias, friction and rotor inertia of each joint."""
     data, eye, rows = model.createData(), np.eye(model.nv), []
     for one in zip(q, v, a, strict=True):
         inertial = np.array(pin.computeJointTorqueRegressor(model, data, *one))
