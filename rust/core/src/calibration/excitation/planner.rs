@@ -80,7 +80,7 @@ impl<'a> ExcitationPlanner<'a> {
             return Err(Error::input("seconds", text));
         }
         let steps = wanted.seconds / wanted.dt;
-        if !(wanted.dt > 0.0 && steps >= 1.0 && steps < MOST_ROWS) {
+        if !(wanted.dt > 0.0 && (1.0..MOST_ROWS).contains(&steps)) {
             let text = format!(
                 "must be positive, at most seconds, and give at most {MOST_ROWS:.0} rows [s], not {}",
                 wanted.dt
