@@ -55,7 +55,18 @@ def test_agrees_with_the_urdf(path):
     np.testing.assert_array_equal(theirs.gravity, ours.gravity)
     for a, b in zip(theirs.joints, ours.joints, strict=True):
         assert (a.name, a.parent, a.kind) == (b.name, b.parent, b.kind)
-        for field in ("axis", "placement", "mass", "com", "inertia", "armature", "lower", "upper", "effort"):
+        for field in (
+            "axis",
+            "placement",
+            "mass",
+            "com",
+            "inertia",
+            "armature",
+            "lower",
+            "upper",
+            "effort",
+            "velocity",
+        ):
             np.testing.assert_allclose(getattr(a, field), getattr(b, field), atol=1e-12, err_msg=field)
     for a, b in zip(theirs.links, ours.links, strict=True):
         assert (a.name, a.joint, len(a.geometry)) == (b.name, b.joint, len(b.geometry))

@@ -23,6 +23,9 @@ SIGNATURES = {
     "LoadCompensator": "robot, sensors",
     "LoadCompensator.update": "q, v, a, wrenches",
     "NoiseModel": "*, torque=0.05, velocity=0.0, relative=0.03, model=0.1",
+    "exciting_motion": "robot, seconds, *, max_velocity=None, seed=0, dt=0.001, joints=None",
+    "Motion.at": "time",
+    "Motion.to_dict": "",
     "ContactIsolator": "robot, *, sensors=(), torque_threshold=1e-3, wrench_threshold=1e-3, "
     "wanted_contacts=(), "
     "max_contacts=5, pushing=True, noise=None, locate_within=0.05",
@@ -102,6 +105,8 @@ def at_run_time(name):
 def in_stub():
     found = {}
     for node in ast.parse(STUB.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.FunctionDef) and not node.name.startswith("_"):
+            found[node.name] = of_node(node.args)
         if not isinstance(node, ast.ClassDef):
             continue
         for member in node.body:

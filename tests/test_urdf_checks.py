@@ -30,8 +30,9 @@ def test_arm_is_described_as_written(tmp_path):
     ]
     shoulder, elbow, _ = description.joints
     np.testing.assert_allclose(elbow.axis, [0, 0.6, 0.8], atol=1e-15)
-    assert (shoulder.lower, shoulder.upper, shoulder.effort) == (-1, 2, 30)
+    assert (shoulder.lower, shoulder.upper, shoulder.effort, shoulder.velocity) == (-1, 2, 30, 3)
     assert (elbow.lower, elbow.upper, elbow.effort) == (-math.inf, math.inf, math.inf)
+    assert elbow.velocity == math.inf
     assert shoulder.mass == 1
     np.testing.assert_allclose(shoulder.com, [0, 0, 0.1], atol=1e-15)
     shapes = {entry.name: [(g.kind, g.params) for g in entry.geometry] for entry in description.links}

@@ -160,5 +160,6 @@ def test_limits_are_those_of_the_file(read, tmp_path):
         found.position_limits, [*[[-np.inf, np.inf]] * 7, [-1, 2], *[[-np.inf, np.inf]] * 2, [-1, 2]]
     )
     np.testing.assert_array_equal(found.effort_limits, [0] * 6 + [30, np.inf, 30])
-    for array in (found.position_limits, found.effort_limits, found.gravity):
+    np.testing.assert_array_equal(found.velocity_limits, [np.inf] * 6 + [3, np.inf, 3])
+    for array in (found.position_limits, found.effort_limits, found.velocity_limits, found.gravity):
         assert not array.flags.writeable

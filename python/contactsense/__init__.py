@@ -14,6 +14,7 @@ from ._core import (
     LoadCompensator,
     Mode,
     MomentumObserver,
+    Motion,
     NoiseModel,
     Particles,
     RayHits,
@@ -21,6 +22,7 @@ from ._core import (
     SurfaceSamples,
     __version__,
     build_profile,
+    exciting_motion,
 )
 from .errors import ContactSenseError, GeometryError, InputError, ModelError
 from .log import Log
@@ -45,6 +47,7 @@ __all__ = [
     "Mode",
     "ModelError",
     "MomentumObserver",
+    "Motion",
     "NoiseModel",
     "Particles",
     "RayHits",
@@ -53,4 +56,5 @@ __all__ = [
     "SurfaceSamples",
     "__version__",
     "build_profile",
+    "exciting_motion",
 ]

@@ -27,6 +27,7 @@ __all__ = [
     "Mode",
     "ModelError",
     "MomentumObserver",
+    "Motion",
     "NoiseModel",
     "Particles",
     "RayHits",
@@ -38,6 +39,7 @@ __all__ = [
     "_restore",
     "_robot_from_urdf",
     "build_profile",
+    "exciting_motion",
 ]
 
 __version__: Final[str]
@@ -126,6 +128,12 @@ class Robot:
         """Smallest and largest value of each configuration variable, `(nq, 2)` [rad or m]; infinite where there is none.
 
         The (cos, sin) pairs of continuous joints and the pose of a floating base have none.
+        """
+    @property
+    def velocity_limits(self) -> NDArray[np.float64]:
+        """Largest velocity of each velocity variable, `(nv,)` [rad/s, m/s].
+
+        It is infinite where there is no limit, and for a floating base.
         """
     @property
     def effort_limits(self) -> NDArray[np.float64]:
@@ -629,6 +637,59 @@ class LoadCompensator:
         Raises:
             InputError: Names the argument.
         """
+
+@final
+class Motion:
+    """A planned motion: where the robot is at each instant, `n` rows at equal distances of time. Read-only.
+
+    Velocities and accelerations are the derivatives of the positions, and zero at both ends. Can be pickled and copied.
+
+    Example:
+        >>> import contactsense as cs
+        >>> motion = cs.exciting_motion(cs.Robot.named("iiwa14"), 2.0)
+        >>> q, v, a = motion.at(0.5)
+        >>> len(motion), q.shape
+        (2001, (7,))
+    """
+
+    def at(self, time: float) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """The motion at any time; before and after it, its ends at rest.
+
+        Args:
+            time: [s].
+
+        Returns:
+            `(q, v, a)`: `(nq,)`, `(nv,)` and `(nv,)`, writable.
+
+        Raises:
+            InputError: the time is not a finite number.
+        """
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, strings, and lists in place of arrays.
+        """
+    def __len__(self) -> int: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """Time of each row, `(n,)`, from zero [s]."""
+    @property
+    def q(self) -> NDArray[np.float64]:
+        """Configurations, `(n, nq)`."""
+    @property
+    def v(self) -> NDArray[np.float64]:
+        """Velocities, `(n, nv)` [rad/s, m/s]."""
+    @property
+    def a(self) -> NDArray[np.float64]:
+        """Accelerations, `(n, nv)` [rad/s^2, m/s^2]."""
+    @property
+    def duration(self) -> float:
+        """Length [s]."""
+    @property
+    def unchecked(self) -> tuple[tuple[str, str], ...]:
+        """Pairs of links whose distance was not checked: neighbours, and those that touch in all poses."""
 
 @final
 class NoiseModel:
@@ -1400,3 +1461,46 @@ class Mode:
     @property
     def spread(self) -> float:
         """Root of the mean squared distance of the mode's particles from their mean [m]."""
+
+def exciting_motion(
+    robot: Robot,
+    seconds: float,
+    *,
+    max_velocity: ArrayLike | None = None,
+    seed: int = 0,
+    dt: float = 0.001,
+    joints: Sequence[str] | None = None,
+) -> Motion:
+    """A contact-free motion that calibration learns from: rest to rest, within limits, clear of the robot itself.
+
+    It is a chain of moves between poses at rest all over the joints' ranges: far and fast ones, ones with sines added,
+    and slow ones. Of several random moves, each time the one is taken that tells most per second about inertial parameters,
+    bias, Coulomb and viscous friction and rotor inertia.
+
+    Links with a surface stay at least 1 cm away from each other and from a plane under the base, except neighbours and
+    those that touch in nearly all poses (`Motion.unchecked`). Nothing else around the robot is known: look at the motion before
+    running it, and run it slowly first.
+
+    Args:
+        robot: with a fixed base.
+        seconds: length, 1 to 600 [s]; 30 to 60 s suit an arm.
+        max_velocity: largest speed of each joint, scalar or `(nv,)` [rad/s; m/s for sliding joints]; by default half of the
+            robot's velocity limits, and 1 rad/s or 0.25 m/s where there are none. A joint comes to its largest speed in 0.25 s
+            or more.
+        seed: of the random numbers; the same seed gives the same motion.
+        dt: time between rows [s].
+        joints: names of the joints that move; the others are held in a pose in which weights load those that move. All by
+            default.
+
+    Returns:
+        A `Motion`.
+
+    Raises:
+        InputError: An argument cannot be used; the base of the robot is free to move; no pose without collision was found.
+
+    Example:
+        >>> import contactsense as cs
+        >>> motion = cs.exciting_motion(cs.Robot.named("iiwa14"), 5.0)
+        >>> motion.q.shape
+        (5001, 7)
+    """

@@ -31,6 +31,7 @@ class JointTuple(NamedTuple):
     lower: float  # -inf where unlimited
     upper: float
     effort: float  # inf where unlimited
+    velocity: float
 
 
 class GeometryTuple(NamedTuple):

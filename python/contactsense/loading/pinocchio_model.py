@@ -43,9 +43,10 @@ def _joint(model: Any, index: int) -> JointTuple:
             f"joint '{name}' is a free flyer inside the robot; a free flyer can only be the root joint"
         )
     inertia = model.inertias[index]
-    lower, upper, effort = -math.inf, math.inf, math.inf
+    lower, upper, effort, velocity = -math.inf, math.inf, math.inf, math.inf
     if kind != "free_flyer":
         effort = _limit(model.effortLimit[joint.idx_v])
+        velocity = _limit(model.velocityLimit[joint.idx_v])
     if kind in ("revolute", "prismatic"):
         lower = _limit(model.lowerPositionLimit[joint.idx_q])
         upper = _limit(model.upperPositionLimit[joint.idx_q])
@@ -62,6 +63,7 @@ def _joint(model: Any, index: int) -> JointTuple:
         lower=lower,
         upper=upper,
         effort=effort,
+        velocity=velocity,
     )
 
 

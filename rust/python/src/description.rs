@@ -69,6 +69,7 @@ fn joint(tuple: &Bound<'_, PyTuple>) -> PyResult<JointDescription> {
         lower: limit(&tuple.get_item(9)?)?,
         upper: limit(&tuple.get_item(10)?)?,
         effort: limit(&tuple.get_item(11)?)?,
+        velocity: limit(&tuple.get_item(12)?)?,
     })
 }
 

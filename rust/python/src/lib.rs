@@ -16,6 +16,7 @@ mod estimate;
 mod filter_options;
 mod isolator;
 mod monitor;
+mod motion;
 mod names;
 mod noise;
 mod observer;
@@ -50,6 +51,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<sensor::PyForceTorqueSensor>()?;
     module.add_class::<compensator::PyLoadCompensator>()?;
     module.add_class::<noise::PyNoiseModel>()?;
+    module.add_function(wrap_pyfunction!(motion::exciting_motion, module)?)?;
+    module.add_class::<motion::PyMotion>()?;
     module.add_class::<isolator::PyContactIsolator>()?;
     module.add_class::<contact::PyIsolation>()?;
     module.add_class::<contact::PyContact>()?;

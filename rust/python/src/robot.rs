@@ -125,6 +125,14 @@ impl PyRobot {
         read_only(PyArray1::from_vec(py, self.0.effort_limits()))
     }
 
+    /// Largest velocity of each velocity variable, `(nv,)` [rad/s, m/s].
+    ///
+    /// It is infinite where there is no limit, and for a floating base.
+    #[getter]
+    fn velocity_limits<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        read_only(PyArray1::from_vec(py, self.0.velocity_limits()))
+    }
+
     fn _with_payload(
         &self,
         link: &Bound<'_, PyAny>,

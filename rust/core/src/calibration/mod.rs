@@ -4,6 +4,7 @@ mod calibrate;
 #[allow(clippy::module_inception)] // the room is called after what it makes
 mod calibration;
 mod contacts;
+mod excitation;
 mod fingerprint;
 mod folds;
 mod friction;
@@ -18,6 +19,7 @@ mod unknowns;
 
 pub use calibrate::calibrate;
 pub use calibration::{BodyInertia, Calibration, CalibrationOptions, Payload};
+pub use excitation::{exciting_motion, Excitation, ExcitationPlanner, Motion};
 pub use log::Log;
 pub use torque_model::{Friction, Reversal};
 

@@ -99,6 +99,9 @@ pub struct JointDescription {
     /// Largest effort (Nm or N).
     #[cfg_attr(feature = "serde", serde(default))]
     pub effort: Option<f64>,
+    /// Largest velocity (rad/s or m/s).
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub velocity: Option<f64>,
 }
 
 /// A URDF link: a named frame on a body, with the parts of its surface.

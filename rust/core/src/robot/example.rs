@@ -32,6 +32,7 @@ impl RobotDescription {
             lower: None,
             upper: None,
             effort: None,
+            velocity: None,
         };
         let link = |k: usize| LinkDescription {
             name: format!("link_{}", k + 1),

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::description::JointKind;
-use super::robot::Robot;
+use super::robot::{Body, Robot};
 use crate::error::Result;
 use crate::math::random::Stream;
 
@@ -56,13 +56,7 @@ impl Robot {
         for (index, body) in self.bodies.iter().enumerate().skip(1) {
             let stream = stream.fork(index as u64);
             let q = &mut q[body.idx_q..];
-            let free = if body.kind == JointKind::Prismatic { REACH } else { PI };
-            let [lower, upper] = match body.position_limits {
-                [lower, upper] if lower.is_finite() && upper.is_finite() => [lower, upper.max(lower)],
-                [lower, _] if lower.is_finite() => [lower, lower + 2.0 * free],
-                [_, upper] if upper.is_finite() => [upper - 2.0 * free, upper],
-                _ => [-free, free],
-            };
+            let [lower, upper] = working_range(body);
             let position = lower + (upper - lower) * stream.uniform(0);
             match body.kind {
                 JointKind::Revolute | JointKind::Prismatic => q[0] = position,
@@ -82,7 +76,7 @@ impl Robot {
 
     /// Smallest and largest value of each configuration variable (rad or m), infinite where there is no limit.
     pub fn position_limits(&self) -> Vec<[f64; 2]> {
-        let one = |body: &super::robot::Body| match body.kind {
+        let one = |body: &Body| match body.kind {
             JointKind::Revolute | JointKind::Prismatic => vec![body.position_limits],
             kind => vec![[f64::NEG_INFINITY, f64::INFINITY]; kind.nq()],
         };
@@ -91,11 +85,28 @@ impl Robot {
 
     /// Largest effort of each velocity variable (Nm or N), infinite where there is no limit, 0 of a floating base.
     pub fn effort_limits(&self) -> Vec<f64> {
-        let one = |body: &super::robot::Body| match body.kind {
+        let one = |body: &Body| match body.kind {
             JointKind::FreeFlyer => vec![0.0; 6],
             _ => vec![body.effort_limit],
         };
         self.bodies[1..].iter().flat_map(one).collect()
+    }
+
+    /// Largest velocity of each velocity variable (rad/s or m/s), infinite where there is no limit and for a floating base.
+    pub fn velocity_limits(&self) -> Vec<f64> {
+        let one = |body: &Body| vec![body.velocity_limit; body.kind.nv()];
+        self.bodies[1..].iter().flat_map(one).collect()
+    }
+}
+
+/// The positions of a joint that are in use (rad or m): its limits, where it has none half a turn or 1 m either way.
+pub(crate) fn working_range(body: &Body) -> [f64; 2] {
+    let free = if body.kind == JointKind::Prismatic { REACH } else { PI };
+    match body.position_limits {
+        [lower, upper] if lower.is_finite() && upper.is_finite() => [lower, upper.max(lower)],
+        [lower, _] if lower.is_finite() => [lower, lower + 2.0 * free],
+        [_, upper] if upper.is_finite() => [upper - 2.0 * free, upper],
+        _ => [-free, free],
     }
 }
 

@@ -10,7 +10,7 @@ mod example;
 pub(crate) mod ids;
 #[allow(dead_code)] // until calibration writes them
 pub(crate) mod inertial_parameters;
-mod integrate;
+pub(crate) mod integrate;
 pub(crate) mod jacobian;
 pub(crate) mod joint_axis;
 mod kinematics;

@@ -31,9 +31,10 @@ pub(crate) struct Body {
     pub com: Vector3<f64>,
     pub inertia: Matrix3<f64>,
     pub armature: f64,
-    /// Of the position [rad or m], and of the effort [Nm or N]; infinite where there is none.
+    /// Of the position [rad or m], the effort [Nm or N] and the velocity [rad/s or m/s]; infinite where there is none.
     pub position_limits: [f64; 2],
     pub effort_limit: f64,
+    pub velocity_limit: f64,
 }
 
 /// A robot: immutable, shareable between threads.
@@ -110,6 +111,7 @@ impl Robot {
                     joint.upper.unwrap_or(f64::INFINITY),
                 ],
                 effort_limit: joint.effort.unwrap_or(f64::INFINITY),
+                velocity_limit: joint.velocity.unwrap_or(f64::INFINITY),
             });
             let mut chain = chains[joint.parent.get()].clone();
             chain.push(index + 1);
@@ -302,6 +304,7 @@ impl Body {
             armature: 0.0,
             position_limits: [f64::NEG_INFINITY, f64::INFINITY],
             effort_limit: f64::INFINITY,
+            velocity_limit: f64::INFINITY,
         }
     }
 }

@@ -20,6 +20,7 @@ pub(crate) fn joint(name: &str, parent: usize) -> JointDescription {
         lower: None,
         upper: None,
         effort: None,
+        velocity: None,
     }
 }
 

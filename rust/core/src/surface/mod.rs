@@ -123,6 +123,21 @@ impl Surface {
         self.solids.len() > 1 && self.sampler.hides(&self.solids, point, triangle)
     }
 
+    /// Distance to the surface where it is less than `bound`, else `bound` (m), and the triangle of the nearest point if it is
+    /// on a mesh; much faster than [`closest_point_from`](Self::closest_point_from) where the bound is small.
+    pub(crate) fn distance_within(
+        &self,
+        p: &Vector3<f64>,
+        bound: f64,
+        triangle: Option<u32>,
+    ) -> (f64, Option<u32>) {
+        let mut best = ClosestPoint { point: *p, normal: Vector3::z(), distance: bound, triangle: None };
+        for solid in &self.solids {
+            solid.closest_point(p, triangle, &mut best);
+        }
+        (best.distance, best.triangle)
+    }
+
     fn nearest(&self, p: &Vector3<f64>, warm_start: Option<u32>) -> ClosestPoint {
         let mut best = ClosestPoint {
             point: Vector3::repeat(f64::NAN),

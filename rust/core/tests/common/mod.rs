@@ -52,6 +52,7 @@ fn joint(
         lower: None,
         upper: None,
         effort: None,
+        velocity: None,
     }
 }
 

@@ -109,6 +109,7 @@ fn a_joint_that_moves_nothing_stands_still() {
             lower: None,
             upper: None,
             effort: None,
+            velocity: None,
         }],
         links: vec![],
         gravity: nalgebra::Vector3::zeros(),

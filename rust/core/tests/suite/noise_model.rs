@@ -17,7 +17,7 @@ fn noise() -> NoiseModel {
         torque: vec![0.3, 0.25, 0.2, 0.15, 0.1, 0.05, 0.05],
         model: vec![0.4, 0.4, 0.3, 0.3, 0.1, 0.1, 0.05],
         relative: vec![0.05],
-        velocity: vec![0.0],
+        ..NoiseModel::default()
     }
 }
 
@@ -94,8 +94,13 @@ fn the_filter_and_isolation_feel_the_same_torques() {
 #[test]
 fn thresholds_are_a_short_form_of_noise() {
     let short = IsolatorOptions { torque_threshold: Some(vec![0.3]), ..IsolatorOptions::default() };
-    let noise =
-        NoiseModel { torque: vec![0.3 / 3.0], velocity: vec![0.0], relative: vec![0.01], model: vec![0.0] };
+    let noise = NoiseModel {
+        torque: vec![0.3 / 3.0],
+        velocity: vec![0.0],
+        relative: vec![0.01],
+        model: vec![0.0],
+        ..NoiseModel::default()
+    };
     let long = IsolatorOptions { noise: Some(noise), torque_threshold: None, ..IsolatorOptions::default() };
     let robot = Arc::new(Robot::example_arm());
     let mut isolators =

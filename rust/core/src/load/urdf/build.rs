@@ -104,6 +104,7 @@ fn free_flyer(name: &str, placement: Pose) -> JointDescription {
         lower: None,
         upper: None,
         effort: None,
+        velocity: None,
     }
 }
 
@@ -115,7 +116,7 @@ fn joint(urdf: &urdf_rs::Joint, parent: BodyIndex, kind: JointKind, placement: P
     let limited = |value: f64| (value.abs() < UNLIMITED).then_some(value);
     let position = |value: f64| limited(value).filter(|_| kind != JointKind::Continuous);
     let (lower, upper) = (position(urdf.limit.lower), position(urdf.limit.upper));
-    let effort = limited(urdf.limit.effort);
+    let [effort, velocity] = [urdf.limit.effort, urdf.limit.velocity].map(limited);
     JointDescription {
         parent,
         kind,
@@ -123,6 +124,7 @@ fn joint(urdf: &urdf_rs::Joint, parent: BodyIndex, kind: JointKind, placement: P
         lower,
         upper,
         effort,
+        velocity,
         ..none
     }
 }

@@ -43,6 +43,7 @@ fn arm() -> Robot {
             lower: None,
             upper: None,
             effort: None,
+            velocity: None,
         });
         let pose = Pose { rotation: Matrix3::identity(), translation: Vector3::new(0.0, 0.0, 0.1) };
         links.push(LinkDescription {

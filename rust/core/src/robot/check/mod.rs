@@ -71,7 +71,7 @@ fn check_joint(owner: &str, joint: &JointDescription, number: usize) -> Result<(
     if joint.kind != JointKind::FreeFlyer && joint.axis.norm() < 1e-9 {
         return Err(Error::model(format!("{owner}: the axis must not be zero")));
     }
-    if [joint.lower, joint.upper, joint.effort].into_iter().flatten().any(f64::is_nan) {
+    if [joint.lower, joint.upper, joint.effort, joint.velocity].into_iter().flatten().any(f64::is_nan) {
         return Err(Error::model(format!(
             "{owner}: limits must be numbers, or none where there is no limit"
         )));
