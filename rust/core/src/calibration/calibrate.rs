@@ -6,12 +6,14 @@ use nalgebra::{DMatrix, DVector};
 
 use super::calibration::{armature, body_inertia};
 use super::contacts::{stretches, without_contact};
+use super::delay::velocity_delay;
 use super::folds::{enough, fit, hold_out, mean_square, HeldOut};
 use super::friction::choose_reversals;
 use super::log::Log;
 use super::noise::{estimate, Judged};
 use super::normal::Joints;
 use super::rows::{rows, Filter, Row, Term};
+use super::smooth::smooth_velocity;
 use super::solve::Solution;
 use super::torque_model::{Friction, TorqueModel, REVERSALS};
 use super::unknowns::{Unknowns, ARMATURE, BIAS, COULOMB, TERMS, VISCOUS};
@@ -52,7 +54,9 @@ pub fn calibrate(robot: &Robot, log: &Log<'_>, options: &CalibrationOptions) -> 
     }
     let step = median_step(log)?;
     let filter = filter_of(robot, log, step);
-    let fit = Fit::of(robot, log, options, &filter)?;
+    let [velocity_delay, _] = velocity_delay(robot, log, step);
+    let v = smooth_velocity(robot, log, velocity_delay, step);
+    let fit = Fit::of(robot, &Log { v: &v, ..*log }, options, &filter, velocity_delay)?;
     fit.calibration(robot, log, options, step)
 }
 
@@ -65,10 +69,17 @@ struct Fit {
     held_out: HeldOut,
     solution: Solution,
     covariance: DMatrix<f64>,
+    velocity_delay: f64,
 }
 
 impl Fit {
-    fn of(robot: &Robot, log: &Log<'_>, options: &CalibrationOptions, filter: &Filter) -> Result<Self> {
+    fn of(
+        robot: &Robot,
+        log: &Log<'_>,
+        options: &CalibrationOptions,
+        filter: &Filter,
+        velocity_delay: f64,
+    ) -> Result<Self> {
         let rows = rows(robot, log, filter, &terms());
         if !enough(rows.len()) {
             let text = format!(
@@ -95,7 +106,7 @@ impl Fit {
         }
         let (solution, covariance) =
             fit(&unknowns, &joints, &rows, &used, held_out.change).ok_or_else(failed)?;
-        Ok(Fit { unknowns, joints, rows, used, held_out, solution, covariance })
+        Ok(Fit { unknowns, joints, rows, used, held_out, solution, covariance, velocity_delay })
     }
 
     fn calibration(
@@ -130,6 +141,8 @@ impl Fit {
             bodies: without_payload.iter().enumerate().map(|(k, x)| body_inertia(robot, k, x)).collect(),
             payload: options.payload_link.and_then(|link| self.payload(&robot[link].name)),
             inertial_change: self.held_out.change,
+            velocity_delay: self.velocity_delay,
+            torque_delay: z[unknowns.torque_delay()],
             noise: self.noise(robot, log, step)?,
             residual: (0..nv).map(|j| mean_square(&self.held_out.residuals, &self.used, j).sqrt()).collect(),
             false_alarms_per_hour: options.false_alarms_per_hour,
@@ -201,7 +214,8 @@ impl Fit {
     fn torque_model(&self, correction: &DVector<f64>) -> TorqueModel {
         let nv = self.joints.weights.len();
         let bias: Vec<f64> = (0..nv).map(|j| correction[self.unknowns.term_column(j, BIAS)]).collect();
-        TorqueModel::new(&vec![1.0; nv], &bias, &self.friction(correction))
+        let delays = [self.velocity_delay, correction[self.unknowns.delay_column()]];
+        TorqueModel::new(&vec![1.0; nv], &bias, &self.friction(correction), delays)
     }
 
     fn friction(&self, correction: &DVector<f64>) -> Friction {
@@ -221,7 +235,7 @@ impl Fit {
 fn terms() -> Vec<Term> {
     let mut terms = vec![Term::Bias];
     terms.extend(REVERSALS.map(Term::Coulomb));
-    terms.extend([Term::Viscous, Term::Armature]);
+    terms.extend([Term::Viscous, Term::Armature, Term::TorqueRate]);
     terms
 }
 

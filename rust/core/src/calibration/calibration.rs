@@ -240,7 +240,8 @@ impl Calibration {
 
     #[allow(dead_code)] // until observers take it
     pub(crate) fn torque_model(&self) -> TorqueModel {
-        TorqueModel::new(&self.torque_scale, &self.torque_bias, &self.friction)
+        let delays = [self.velocity_delay, self.torque_delay];
+        TorqueModel::new(&self.torque_scale, &self.torque_bias, &self.friction, delays)
     }
 }
 

@@ -8,9 +8,6 @@ use super::rows::Row;
 use super::torque_model::REVERSALS;
 use super::unknowns::{Unknowns, TERMS};
 
-/// Another reversal must be better by so many standard errors over the blocks: they differ little where motion is fast.
-const STANDARD_ERRORS: f64 = 1.0;
-
 /// The reversal of each joint's friction that leaves least on held-out blocks, when the joint's own terms are fitted anew.
 pub(super) fn choose_reversals(
     unknowns: &Unknowns,
@@ -22,17 +19,11 @@ pub(super) fn choose_reversals(
     let choose = |joint: usize| {
         let now = joints.friction[joint];
         let score = |friction: usize| left_of(unknowns, joints, rows, used, held_out, (joint, friction));
-        let Some(usual) = score(now) else { return now };
-        let mut best = (0.0, now);
+        let mut best = (score(now).unwrap_or(f64::INFINITY), now);
         for friction in (0..REVERSALS.len()).filter(|friction| *friction != now) {
-            let gains =
-                score(friction).map(|left| usual.iter().zip(&left).map(|(u, l)| u - l).collect::<Vec<_>>());
-            let Some(gains) = gains else { continue };
-            let count = gains.len() as f64;
-            let gain = gains.iter().sum::<f64>() / count;
-            let variance = gains.iter().map(|g| (g - gain).powi(2)).sum::<f64>() / (count - 1.0);
-            if gain > f64::max(best.0, STANDARD_ERRORS * (variance / count).sqrt()) {
-                best = (gain, friction);
+            let left = score(friction).unwrap_or(f64::INFINITY);
+            if left < best.0 {
+                best = (left, friction);
             }
         }
         best.1
@@ -40,7 +31,7 @@ pub(super) fn choose_reversals(
     (0..joints.weights.len()).map(choose).collect()
 }
 
-/// The sums of squares of held-out blocks.
+/// The sum of squares over held-out blocks.
 fn left_of(
     unknowns: &Unknowns,
     joints: &Joints,
@@ -48,7 +39,7 @@ fn left_of(
     used: &[bool],
     held_out: &HeldOut,
     (joint, friction): (usize, usize),
-) -> Option<Vec<f64>> {
+) -> Option<f64> {
     // What the joint's own terms have to explain: the residual with their present part put back.
     let target = |row: &Row, correction: &DVector<f64>| {
         let own = own_terms(row, joint, joints.friction[joint]);
@@ -56,7 +47,7 @@ fn left_of(
             (0..TERMS).map(|term| own[term] * correction[unknowns.term_column(joint, term)]).sum();
         residual(unknowns, joints, row, joint, correction) + present
     };
-    let mut left = vec![];
+    let mut left = 0.0;
     for (block, correction) in held_out.corrections.iter().enumerate() {
         let (mut matrix, mut right) = (Matrix4::zeros(), Vector4::zeros());
         let mut judged = vec![];
@@ -73,7 +64,7 @@ fn left_of(
         // As weak a ridge as rounding needs.
         matrix += Matrix4::identity() * (1e-9 * matrix.trace());
         let terms = matrix.cholesky()?.solve(&right);
-        left.push(judged.iter().map(|(own, target)| (target - own.dot(&terms)).powi(2)).sum::<f64>());
+        left += judged.iter().map(|(own, target)| (target - own.dot(&terms)).powi(2)).sum::<f64>();
     }
     Some(left)
 }

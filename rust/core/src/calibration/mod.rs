@@ -4,15 +4,18 @@ mod calibrate;
 #[allow(clippy::module_inception)] // the room is called after what it makes
 mod calibration;
 mod contacts;
+mod delay;
 mod excitation;
 mod fingerprint;
 mod folds;
 mod friction;
+mod lead;
 mod log;
 mod noise;
 mod normal;
 mod pseudo_inertia;
 pub(crate) mod rows;
+mod smooth;
 mod solve;
 mod torque_model;
 mod unknowns;

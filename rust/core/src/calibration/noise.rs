@@ -105,7 +105,7 @@ fn spread(robot: &Robot, log: &Log<'_>, parts: &[Judged], skipped: &[bool], step
     let mut squares = vec![DVector::zeros(nv); gains.len()];
     let mut counts = vec![0.0; gains.len()];
     let (mut mass, mut poses) = (DMatrix::zeros(nv, nv), 0.0);
-    let mut tau = vec![0.0; nv];
+    let (mut v, mut tau) = (vec![0.0; nv], vec![0.0; nv]);
     for part in parts {
         for (which, &gain) in gains.iter().enumerate() {
             let mut observer = MomentumObserver::new(Arc::clone(&part.robot), step, &[gain])?;
@@ -121,9 +121,9 @@ fn spread(robot: &Robot, log: &Log<'_>, parts: &[Judged], skipped: &[bool], step
                     continue;
                 }
                 tau.copy_from_slice(log.tau_of(row));
-                let v = log.v_of(robot, row);
-                torque.correct(v, dt, &mut tau);
-                let external = observer.update(&Sample::new(log.q_of(robot, row), v, &tau).dt(dt))?;
+                v.copy_from_slice(log.v_of(robot, row));
+                torque.correct(dt, &mut v, &mut tau);
+                let external = observer.update(&Sample::new(log.q_of(robot, row), &v, &tau).dt(dt))?;
                 since += dt;
                 if since > settled {
                     for (sum, r) in squares[which].iter_mut().zip(external) {

@@ -6,7 +6,7 @@ use super::rows::Row;
 use super::torque_model::REVERSALS;
 use super::unknowns::{Unknowns, ARMATURE, BIAS, COULOMB, TERMS, VISCOUS};
 
-/// Columns of a row's terms: bias, Coulomb friction of each reversal, viscous friction, rotor inertia.
+/// Columns of a row's terms: bias, Coulomb friction of each reversal, viscous friction, rotor inertia, rate of the torque.
 const FIRST_FRICTION: usize = 1;
 const AFTER_FRICTION: usize = FIRST_FRICTION + REVERSALS.len();
 
@@ -83,4 +83,6 @@ fn columns(unknowns: &Unknowns, joints: &Joints, row: &Row, joint: usize, entrie
     entries.extend(inertial.iter().enumerate().filter(|(_, value)| **value != 0.0).map(|(k, v)| (k, *v)));
     let terms = own_terms(row, joint, joints.friction[joint]);
     entries.extend(terms.iter().enumerate().map(|(term, v)| (unknowns.term_column(joint, term), *v)));
+    // What a late torque lacks.
+    entries.push((unknowns.delay_column(), -row.terms[(joint, AFTER_FRICTION + 2)]));
 }

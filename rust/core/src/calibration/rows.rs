@@ -5,6 +5,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::lead::Lead;
 use super::log::Log;
 use super::torque_model::Reversal;
 use crate::robot::configuration::spread_torque;
@@ -24,8 +25,7 @@ pub(crate) enum Term {
     /// The measured torque.
     #[allow(dead_code)] // until diagnosis reads it
     Torque,
-    /// Its rate.
-    #[allow(dead_code)] // until diagnosis reads it
+    /// Its rate, as [`Lead`] sees it.
     TorqueRate,
 }
 
@@ -67,7 +67,7 @@ pub(crate) fn rows(robot: &Robot, log: &Log<'_>, filter: &Filter, terms: &[Term]
     let mut state = Filtered::new(robot, terms);
     let mut rows = vec![];
     let (mut started, mut last) = (f64::NAN, f64::NEG_INFINITY);
-    let mut tau = vec![0.0; nv];
+    let (mut tau, mut rate) = (vec![0.0; nv], Lead::new(0.0, nv));
     for index in 0..log.len() {
         let v = log.v_of(robot, index);
         kinematics.set_configuration(robot, log.q_of(robot, index));
@@ -79,11 +79,15 @@ pub(crate) fn rows(robot: &Robot, log: &Log<'_>, filter: &Filter, terms: &[Term]
         now.rate_columns.copy_from(&regressor.rate);
         spread_torque(log.tau_of(index), &mut tau);
         now.tau.copy_from_slice(&tau);
+        let last_step = if index == 0 { 0.0 } else { log.time[index] - log.time[index - 1] };
+        rate.rates(last_step, &mut tau, |tau, rate| *tau = rate);
+        now.torque_rate.copy_from_slice(&tau);
         now.v.copy_from_slice(v);
         let time = log.time[index];
         let step = if index == 0 { f64::INFINITY } else { time - log.time[index - 1] };
         if step > filter.longest_step {
             state.restart();
+            rate.reset();
             started = time;
             continue;
         }
@@ -105,6 +109,7 @@ struct Instant {
     rate_columns: DMatrix<f64>,
     v: DVector<f64>,
     tau: DVector<f64>,
+    torque_rate: DVector<f64>,
 }
 
 impl Instant {
@@ -117,7 +122,8 @@ impl Instant {
             momentum_columns: columns.momentum,
             rate_columns: columns.rate,
             v: vector.clone(),
-            tau: vector,
+            tau: vector.clone(),
+            torque_rate: vector,
         }
     }
 }
@@ -182,7 +188,7 @@ impl Filtered {
                     Term::Viscous => mean * (v[0] + v[1]),
                     Term::Armature => rise * (v[1] - v[0]),
                     Term::Torque => mean * (tau[0] + tau[1]),
-                    Term::TorqueRate => rise * (tau[1] - tau[0]),
+                    Term::TorqueRate => mean * (before.torque_rate[k] + now.torque_rate[k]),
                 };
                 let y = &mut self.terms[(k, column)];
                 *y = kept * *y + input;

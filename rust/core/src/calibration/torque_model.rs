@@ -1,4 +1,6 @@
-//! From a measured torque to the torque that moves the links: scale, bias and friction of each joint.
+//! From measured torques to those that move the links: scale, bias and friction of each joint, and delays.
+
+use super::lead::Lead;
 
 /// Friction of the joints, by velocity variable.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -68,10 +70,12 @@ pub(crate) fn sliding(x: f64) -> f64 {
         / (135_135.0 + y * (62_370.0 + y * (3_150.0 + y * 28.0)))
 }
 
-/// Corrects measured torques.
+/// Corrects measured torques and velocities.
 #[derive(Debug, Clone)]
 pub(crate) struct TorqueModel {
     joints: Vec<Joint>,
+    velocity_lead: Lead,
+    torque_lead: Lead,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -86,7 +90,8 @@ struct Joint {
 }
 
 impl TorqueModel {
-    pub fn new(scale: &[f64], bias: &[f64], friction: &Friction) -> Self {
+    /// `delays` are those of velocity and torque (s).
+    pub fn new(scale: &[f64], bias: &[f64], friction: &Friction, delays: [f64; 2]) -> Self {
         let joint = |j: usize| Joint {
             scale: scale[j],
             bias: bias[j],
@@ -95,20 +100,25 @@ impl TorqueModel {
             reversal: friction.reversal[j],
             share: 0.0,
         };
-        TorqueModel { joints: (0..scale.len()).map(joint).collect() }
+        let [velocity_lead, torque_lead] = delays.map(|delay| Lead::new(delay, scale.len()));
+        TorqueModel { joints: (0..scale.len()).map(joint).collect(), velocity_lead, torque_lead }
     }
 
-    /// Forgets which way the joints moved.
+    /// Forgets the signals of before.
     pub fn reset(&mut self) {
         self.joints.iter_mut().for_each(|joint| joint.share = 0.0);
+        self.velocity_lead.reset();
+        self.torque_lead.reset();
     }
 
-    /// Corrects `tau` in place at the velocity `v`, both `(nv,)`, after a step of `dt` (s; zero at the first).
+    /// Corrects `v` and `tau` in place, both `(nv,)`, after a step of `dt` (s; zero at the first).
     #[inline]
-    pub fn correct(&mut self, v: &[f64], dt: f64, tau: &mut [f64]) {
+    pub fn correct(&mut self, dt: f64, v: &mut [f64], tau: &mut [f64]) {
+        self.velocity_lead.advance(dt, v);
+        self.torque_lead.advance(dt, tau);
         for ((joint, v), tau) in self.joints.iter_mut().zip(v).zip(tau) {
             joint.share = joint.reversal.share(joint.share, *v, dt);
-            let friction = joint.coulomb * joint.share + joint.viscous * v;
+            let friction = joint.coulomb * joint.share + joint.viscous * *v;
             *tau = joint.scale * *tau - joint.bias - friction;
         }
     }
@@ -132,7 +142,7 @@ mod tests {
         let reversal = vec![Reversal::Velocity(0.01)];
         let friction = Friction { coulomb: vec![0.5], viscous: vec![0.1], reversal };
         let mut tau = [-3.0];
-        TorqueModel::new(&[-1.0], &[0.2], &friction).correct(&[1.0], 1e-3, &mut tau);
+        TorqueModel::new(&[-1.0], &[0.2], &friction, [0.0; 2]).correct(1e-3, &mut [1.0], &mut tau);
         assert!((tau[0] - (3.0 - 0.2 - 0.5 - 0.1)).abs() < 2e-4);
     }
 
@@ -140,10 +150,10 @@ mod tests {
     fn friction_that_turns_with_displacement_stays_at_rest() {
         let reversal = vec![Reversal::Displacement(0.01)];
         let friction = Friction { coulomb: vec![2.0], viscous: vec![0.0], reversal };
-        let mut model = TorqueModel::new(&[1.0], &[0.0], &friction);
+        let mut model = TorqueModel::new(&[1.0], &[0.0], &friction, [0.0; 2]);
         let mut friction_at = |v: f64| {
             let mut tau = [0.0];
-            model.correct(&[v], 1e-3, &mut tau);
+            model.correct(1e-3, &mut [v], &mut tau);
             -tau[0]
         };
         (0..20).for_each(|_| _ = friction_at(1.0));
@@ -152,7 +162,7 @@ mod tests {
         assert!((0..10).map(|_| friction_at(-1.0)).last().unwrap().abs() < 1e-12);
         model.reset();
         let mut tau = [0.0];
-        model.correct(&[0.0], 1e-3, &mut tau);
+        model.correct(1e-3, &mut [0.0], &mut tau);
         assert_eq!(tau[0], 0.0);
     }
 }

@@ -18,6 +18,8 @@ pub(super) const ARMATURE: usize = 3;
 /// taken to be the same about all axes (kg m^2).
 pub(super) const PAYLOAD: usize = 5;
 const PARAMETERS: usize = 10;
+/// A torque may be late by so much: one standard deviation (s).
+const TORQUE_DELAY: f64 = 0.01;
 
 /// A payload may weigh this share of the robot, be this far from the link's origin (m) and have this radius of gyration
 /// (m): one standard deviation each, wide enough for any tool.
@@ -81,12 +83,22 @@ impl Unknowns {
 
     /// Number of unknowns.
     pub fn len(&self) -> usize {
-        self.term(self.joints, 0) + if self.payload.is_some() { PAYLOAD } else { 0 }
+        self.torque_delay() + 1 + if self.payload.is_some() { PAYLOAD } else { 0 }
     }
 
-    /// Number of columns of the regression: ten a body, [`TERMS`] a joint.
+    /// Number of columns of the regression: ten a body, [`TERMS`] a joint, and the delay of the torque.
     pub fn columns(&self) -> usize {
+        self.delay_column() + 1
+    }
+
+    /// Where the delay of the torque is among the columns.
+    pub fn delay_column(&self) -> usize {
         PARAMETERS * self.bodies.len() + TERMS * self.joints
+    }
+
+    /// Where it is among the unknowns.
+    pub fn torque_delay(&self) -> usize {
+        self.term(self.joints, 0)
     }
 
     /// Where a term of a joint is among the columns of the regression.
@@ -101,7 +113,7 @@ impl Unknowns {
 
     /// Where the payload's mass is among the unknowns.
     pub fn payload(&self) -> Option<usize> {
-        self.payload.map(|_| self.term(self.joints, 0))
+        self.payload.map(|_| self.torque_delay() + 1)
     }
 
     /// One standard deviation of each before the log is seen, for a `change` of the bodies (a share).
@@ -109,6 +121,7 @@ impl Unknowns {
         let bodies = self.bodies.iter().flat_map(|body| body.map_or([1.0; CHANGES], |body| body.units()));
         let mut units: Vec<f64> = bodies.map(|unit| unit * change).collect();
         units.extend(self.term_units.iter().flatten());
+        units.push(TORQUE_DELAY);
         if self.payload.is_some() {
             let mass = PAYLOAD_SHARE * self.robot_mass;
             let (moment, spread) = (mass * PAYLOAD_REACH, mass * PAYLOAD_SIZE * PAYLOAD_SIZE);
@@ -121,6 +134,7 @@ impl Unknowns {
     pub fn floors(&self) -> Vec<f64> {
         let mut floors = vec![f64::NEG_INFINITY; CHANGES * self.bodies.len()];
         floors.extend(self.term_floors.iter().flatten());
+        floors.push(0.0);
         if self.payload.is_some() {
             floors.extend([0.0, f64::NEG_INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY, 0.0]);
         }
@@ -136,8 +150,8 @@ impl Unknowns {
             }
         }
         let first = PARAMETERS * self.bodies.len();
-        let terms = z.rows(self.term(0, 0), TERMS * self.joints);
-        correction.rows_mut(first, TERMS * self.joints).copy_from(&terms);
+        let terms = z.rows(self.term(0, 0), TERMS * self.joints + 1);
+        correction.rows_mut(first, TERMS * self.joints + 1).copy_from(&terms);
         correction
     }
 
@@ -183,7 +197,8 @@ impl Unknowns {
             }
         }
         let first_term = PARAMETERS * self.bodies.len();
-        columns.extend((0..TERMS * self.joints).map(|k| Column { first: first_term + k, values: vec![1.0] }));
+        columns
+            .extend((0..=TERMS * self.joints).map(|k| Column { first: first_term + k, values: vec![1.0] }));
         if let Some((held, numbers)) = self.held(z) {
             let scales = [self.robot_mass; PAYLOAD];
             for k in 0..PAYLOAD {

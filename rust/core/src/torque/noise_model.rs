@@ -1,7 +1,10 @@
 //! How large the errors of an external torque are: the one meaning of noise for detection, isolation and posteriors.
 
+use nalgebra::{DMatrix, DVector};
+
 use crate::error::{Error, Result};
 use crate::robot::{Robot, LARGEST};
+use crate::sample::check_time_step;
 
 /// Errors of the external torque of the untouched robot, each as one standard deviation: one number for all velocity
 /// variables, or one for each.
@@ -61,6 +64,60 @@ impl NoiseModel {
             model: vec![0.0],
             model_time: vec![1.0],
         }
+    }
+
+    /// The covariance of the external torque of the untouched robot at `q` behind an observer of a `gain` (1/s) that is called
+    /// every `dt` (s), `(nv, nv)` (Nm squared): white noise of the torque is averaged, white noise of the velocity passes
+    /// through gain and mass matrix, and slow errors pass as far as the observer follows them (algorithm D1).
+    ///
+    /// # Errors
+    /// [`Error::Input`] names the field or argument.
+    pub fn covariance(&self, robot: &Robot, q: &[f64], gain: f64, dt: f64) -> Result<DMatrix<f64>> {
+        Ok(self.parts(robot, q, gain, dt)?.into_iter().map(|(part, _)| part).sum())
+    }
+
+    /// Over which time (s) the errors of each velocity variable stay alike, `(nv,)`: as independent as samples so far apart.
+    ///
+    /// # Errors
+    /// [`Error::Input`] names the field or argument.
+    pub fn correlation_time(&self, robot: &Robot, q: &[f64], gain: f64, dt: f64) -> Result<Vec<f64>> {
+        let parts = self.parts(robot, q, gain, dt)?;
+        let time = |k: usize| {
+            let variance: f64 = parts.iter().map(|(part, _)| part[(k, k)]).sum();
+            let sum: f64 = parts.iter().map(|(part, times)| part[(k, k)] * times[k]).sum();
+            if variance > 0.0 {
+                sum / variance
+            } else {
+                0.0
+            }
+        };
+        Ok((0..robot.nv()).map(time).collect())
+    }
+
+    /// What torque, velocity and slow errors add to the covariance, and the correlation time of each part.
+    fn parts(&self, robot: &Robot, q: &[f64], gain: f64, dt: f64) -> Result<[(DMatrix<f64>, Vec<f64>); 3]> {
+        self.check()?;
+        check_time_step(dt)?;
+        if !(gain > 0.0 && gain < LARGEST) {
+            return Err(Error::input("gain", format!("must be positive [1/s], not {gain}")));
+        }
+        let squares = |name, values: &[f64]| {
+            let values = robot.per_velocity(name, values)?;
+            Ok(DVector::from_vec(values.into_iter().map(|x| x * x).collect()))
+        };
+        let times = robot.per_velocity("noise.model_time", &self.model_time)?;
+        let (torque, model) = (squares("noise.torque", &self.torque)?, squares("noise.model", &self.model)?);
+        let mass = robot.mass_matrix(q)?;
+        let velocity = DMatrix::from_diagonal(&squares("noise.velocity", &self.velocity)?);
+        let shares: Vec<f64> = times.iter().map(|time| Self::model_share(gain, *time)).collect();
+        let model = model.component_mul(&DVector::from_vec(shares));
+        let lag = 1.0 / gain;
+        let slow = times.into_iter().map(|time| time + lag).collect();
+        Ok([
+            (DMatrix::from_diagonal(&(torque * Self::torque_share(gain, dt))), vec![lag; robot.nv()]),
+            (&mass * velocity * &mass * Self::velocity_share(gain, dt), vec![dt; robot.nv()]),
+            (DMatrix::from_diagonal(&model), slow),
+        ])
     }
 
     /// What an observer of a `gain` (1/s), called every `dt` (s), leaves of the variance of the torque's white noise.
