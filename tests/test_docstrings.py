@@ -22,6 +22,7 @@ UNITLESS = {
     "directions",
     "relative",
     "hysteresis",
+    "torque_scale",
 }
 
 
@@ -68,7 +69,7 @@ def callables():
     for cls in CLASSES:
         if issubclass(cls, Exception):
             continue
-        if cls is not cs.Robot and inspect.signature(cls).parameters:
+        if cls not in (cs.Robot, cs.Calibration) and inspect.signature(cls).parameters:
             yield cls.__name__, cls, inspect.getdoc(cls)
         for name, member in members(cls):
             if callable(member):

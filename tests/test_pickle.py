@@ -31,7 +31,7 @@ def attributes(obj):
         return [attributes(item) for item in obj]
     if isinstance(obj, dict):
         return {key: attributes(value) for key, value in obj.items()}
-    if type(obj).__module__ != "contactsense":
+    if not type(obj).__module__.startswith("contactsense"):
         return obj
     names = [name for name in dir(obj) if not name.startswith("_") and not callable(getattr(obj, name))]
     return {name: attributes(getattr(obj, name)) for name in names}
@@ -64,11 +64,15 @@ def objects():
     particle_filter = cs.ContactParticleFilter(robot, particles=500, seed=3)
     quiet = particle_filter.update(Q, zeros)
     estimate = particle_filter.update(Q, torque)
+    calibration = cs.Calibration.of_description(robot)
     assert isolation.contacts[0].candidates
     assert report.contacts
     return {
         "ForceTorqueSensor": sensor,
         "NoiseModel": cs.NoiseModel(torque=np.linspace(0.01, 0.07, 7), relative=0.1),
+        "Calibration": calibration,
+        "JointFriction": calibration.friction,
+        "BodyInertia": calibration.bodies[3],
         "ClosestPoints": surface.closest_points(np.eye(3)),
         "RayHits": surface.cast_rays([[0.0, 0.0, 1.0]], [[0.0, 0.0, -1.0]]),
         "SurfaceSamples": surface.sample(10),
@@ -83,9 +87,14 @@ def objects():
     }
 
 
+# Settings, whose arrays are copies at every access.
+COPIES = (cs.ForceTorqueSensor, cs.NoiseModel, cs.Calibration, cs.JointFriction, cs.BodyInertia)
 NAMES = [
     "ForceTorqueSensor",
     "NoiseModel",
+    "Calibration",
+    "JointFriction",
+    "BodyInertia",
     "ClosestPoints",
     "RayHits",
     "SurfaceSamples",
@@ -109,8 +118,8 @@ def test_a_round_trip_keeps_every_bit(objects, name, way):
     assert repr(after) == repr(before)
 
 
-def test_sensors_and_noise_are_equal_after_a_round_trip(objects):
-    for name in ("ForceTorqueSensor", "NoiseModel"):
+def test_settings_are_equal_after_a_round_trip(objects):
+    for name in ("ForceTorqueSensor", "NoiseModel", "Calibration", "JointFriction", "BodyInertia"):
         assert pickle.loads(pickle.dumps(objects[name])) == objects[name]
 
 
@@ -131,7 +140,19 @@ def test_another_version_is_refused(objects):
 
 
 @pytest.mark.parametrize(
-    "name", ["Isolation", "Contact", "Candidate", "ContactReport", "ContactEstimate", "Mode"]
+    "name",
+    [
+        "Isolation",
+        "Contact",
+        "Candidate",
+        "ContactReport",
+        "ContactEstimate",
+        "Mode",
+        "NoiseModel",
+        "Calibration",
+        "JointFriction",
+        "BodyInertia",
+    ],
 )
 def test_to_dict_holds_all_attributes_as_plain_values(objects, name):
     plain = objects[name].to_dict()
@@ -165,7 +186,7 @@ def test_results_are_built_once_and_read_only(objects):
                 assert not value.flags.writeable, (obj, name)
                 assert value.flags.c_contiguous
                 assert value.dtype in (np.float64, np.int64)
-                if type(obj) not in (cs.ForceTorqueSensor, cs.NoiseModel):
+                if type(obj) not in COPIES:
                     assert getattr(obj, name) is value, (obj, name)
 
 

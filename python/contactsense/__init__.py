@@ -1,6 +1,7 @@
 """contactsense: a robot's sense of touch over its whole body from what it already measures."""
 
 from ._core import (
+    BodyInertia,
     Candidate,
     ClosestPoints,
     Contact,
@@ -11,12 +12,14 @@ from ._core import (
     ContactReport,
     ForceTorqueSensor,
     Isolation,
+    JointFriction,
     LoadCompensator,
     Mode,
     MomentumObserver,
     Motion,
     NoiseModel,
     Particles,
+    Payload,
     RayHits,
     Surface,
     SurfaceSamples,
@@ -24,11 +27,14 @@ from ._core import (
     build_profile,
     exciting_motion,
 )
+from .calibration import Calibration, calibrate
 from .errors import ContactSenseError, GeometryError, InputError, ModelError
 from .log import Log
 from .robot import Robot
 
 __all__ = [
+    "BodyInertia",
+    "Calibration",
     "Candidate",
     "ClosestPoints",
     "Contact",
@@ -42,6 +48,7 @@ __all__ = [
     "GeometryError",
     "InputError",
     "Isolation",
+    "JointFriction",
     "LoadCompensator",
     "Log",
     "Mode",
@@ -50,11 +57,13 @@ __all__ = [
     "Motion",
     "NoiseModel",
     "Particles",
+    "Payload",
     "RayHits",
     "Robot",
     "Surface",
     "SurfaceSamples",
     "__version__",
     "build_profile",
+    "calibrate",
     "exciting_motion",
 ]

@@ -10,6 +10,8 @@ from typing_extensions import Self, disjoint_base
 
 __all__ = [
     "_LINK_PREFIX",
+    "BodyInertia",
+    "Calibration",
     "Candidate",
     "ClosestPoints",
     "Contact",
@@ -23,6 +25,7 @@ __all__ = [
     "GeometryError",
     "InputError",
     "Isolation",
+    "JointFriction",
     "LoadCompensator",
     "Mode",
     "ModelError",
@@ -30,11 +33,13 @@ __all__ = [
     "Motion",
     "NoiseModel",
     "Particles",
+    "Payload",
     "RayHits",
     "Robot",
     "Surface",
     "SurfaceSamples",
     "__version__",
+    "_calibrate",
     "_checked_urdf",
     "_restore",
     "_robot_from_urdf",
@@ -638,6 +643,210 @@ class LoadCompensator:
             InputError: Names the argument.
         """
 
+@disjoint_base
+class Calibration:
+    """Base of the class that users have, which adds files."""
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    def __new__(cls, content: Calibration | str) -> Self: ...
+    def _content(self) -> str:
+        """The core's content as JSON."""
+    @staticmethod
+    def _of_description(robot: Robot) -> Calibration: ...
+    @property
+    def robot_name(self) -> str:
+        """Name of the robot that it is of."""
+    @property
+    def fingerprint(self) -> str:
+        """Of that robot's joints and inertias, to tell it from others."""
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the robot's moving joints, in the order of `v`."""
+    @property
+    def torque_bias(self) -> NDArray[np.float64]:
+        """Constant torque that the measurement adds, `(nv,)` [Nm; N for sliding joints]; a read-only copy."""
+    @property
+    def torque_bias_std(self) -> NDArray[np.float64]:
+        """Standard deviation of `torque_bias`, `(nv,)` [Nm; N for sliding joints]; a read-only copy."""
+    @property
+    def torque_scale(self) -> NDArray[np.float64]:
+        """Factor from measured to true torque, its sign included, `(nv,)`; a read-only copy."""
+    @property
+    def torque_is_external(self) -> bool:
+        """Whether the torques are external torques of the vendor: then only bias, scale and noise are corrected."""
+    @property
+    def friction(self) -> JointFriction:
+        """Friction inside the measured torque: a `JointFriction`."""
+    @property
+    def armature(self) -> NDArray[np.float64]:
+        """Rotor inertia, reflected through the gear, `(nv,)` [kg m^2; kg for sliding joints]; a read-only copy."""
+    @property
+    def armature_std(self) -> NDArray[np.float64]:
+        """Standard deviation of `armature`, `(nv,)` [kg m^2; kg for sliding joints]; a read-only copy."""
+    @property
+    def bodies(self) -> tuple[BodyInertia, ...]:
+        """Inertias of all that moves with each joint, without the payload: a tuple of `BodyInertia`, one a joint."""
+    @property
+    def payload(self) -> Payload | None:
+        """What the description lacks on `payload_link`: a `Payload`, or None where none was asked for."""
+    @property
+    def inertial_change(self) -> float:
+        """The share by which inertias may differ from the description, as held-out blocks of the log chose it."""
+    @property
+    def velocity_delay(self) -> float:
+        """How late the velocity is against the position [s]."""
+    @property
+    def torque_delay(self) -> float:
+        """How late the torque is against the position [s]."""
+    @property
+    def sensor_offsets(self) -> dict[str, NDArray[np.float64]]:
+        """What force/torque sensors read without load, by name: a new dict of `(6,)` arrays [N, Nm]."""
+    @property
+    def noise(self) -> NoiseModel:
+        """Errors of the external torque that are left: a `NoiseModel`."""
+    @property
+    def residual(self) -> NDArray[np.float64]:
+        """What is left of the low-passed torque, `(nv,)` [Nm; N for sliding joints]; a read-only copy.
+
+        Root mean square over blocks of the log that were held out of the fit, behind a low-pass of 8/s (slower where the log has few rows a second).
+        """
+    @property
+    def false_alarms_per_hour(self) -> float:
+        """The rate of false alarms that thresholds are set for [1/h]."""
+    @property
+    def contacts(self) -> NDArray[np.float64]:
+        """From when to when contacts were found in the log and left out, `(k, 2)` [s]; a read-only copy."""
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the motion could not tell, and which motion would: a tuple of sentences."""
+    def check(self, robot: Robot) -> None:
+        """Whether it is of this robot and can be used.
+
+        Args:
+            robot: The robot.
+
+        Raises:
+            InputError: The calibration is of another robot, or a number cannot be used; the message says which.
+        """
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, strings, and lists in place of arrays.
+        """
+
+@final
+class JointFriction:
+    """Friction of the joints inside the measured torque.
+
+    At a velocity `v` it is `coulomb * share + viscous * v`, where the share is between -1 and 1 and `reversal` says how it
+    changes its sign. Frozen; equal where all numbers are; can be pickled and copied.
+
+    Example:
+        >>> import contactsense as cs
+        >>> friction = cs.Calibration.of_description(cs.Robot.named("iiwa14")).friction
+        >>> friction.coulomb.shape, friction.reversal[0]
+        ((7,), ('velocity', 0.03))
+    """
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def coulomb(self) -> NDArray[np.float64]:
+        """Coulomb friction, `(nv,)` [Nm; N for sliding joints]; a read-only copy."""
+    @property
+    def coulomb_std(self) -> NDArray[np.float64]:
+        """Standard deviation of `coulomb`, `(nv,)` [Nm; N for sliding joints]; a read-only copy."""
+    @property
+    def viscous(self) -> NDArray[np.float64]:
+        """Viscous friction, `(nv,)` [Nm s/rad; N s/m for sliding joints]; a read-only copy."""
+    @property
+    def viscous_std(self) -> NDArray[np.float64]:
+        """Standard deviation of `viscous`, `(nv,)` [Nm s/rad; N s/m for sliding joints]; a read-only copy."""
+    @property
+    def reversal(self) -> tuple[tuple[Literal["velocity", "displacement"], float], ...]:
+        """How Coulomb friction changes its sign: pairs, one a joint.
+
+        `("velocity", s)`: with the velocity as `tanh(v / s)` [rad/s, m/s]. `("displacement", s)`: with the path since the
+        joint turned round, and whole after `2 s` [rad, m].
+        """
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, strings, and lists in place of arrays.
+        """
+
+@final
+class BodyInertia:
+    """The inertia of all that moves with one joint, in the frame of the link that the joint moves.
+
+    Frozen; equal where all numbers are; can be pickled and copied.
+
+    Example:
+        >>> import contactsense as cs
+        >>> body = cs.Calibration.of_description(cs.Robot.named("iiwa14")).bodies[0]
+        >>> body.link, round(body.mass, 3)
+        ('iiwa_link_1', 5.76)
+    """
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def link(self) -> str:
+        """Name of that link."""
+    @property
+    def mass(self) -> float:
+        """Mass [kg]."""
+    @property
+    def com(self) -> NDArray[np.float64]:
+        """Centre of mass, `(3,)`, link frame [m]; a read-only copy."""
+    @property
+    def inertia(self) -> NDArray[np.float64]:
+        """Inertia about the centre of mass, `(3, 3)`, in the link's axes [kg m^2]; a read-only copy."""
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, strings, and lists in place of arrays.
+        """
+
+@final
+class Payload:
+    """A payload at a link.
+
+    Frozen; equal where all numbers are; can be pickled and copied.
+
+    Example:
+        >>> import contactsense as cs
+        >>> cs.Calibration.of_description(cs.Robot.named("iiwa14")).payload is None
+        True
+    """
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def link(self) -> str:
+        """Name of the link that holds it."""
+    @property
+    def mass(self) -> float:
+        """Mass [kg]."""
+    @property
+    def mass_std(self) -> float:
+        """Standard deviation of `mass` [kg]."""
+    @property
+    def com(self) -> NDArray[np.float64]:
+        """Centre of mass, `(3,)`, link frame [m]; a read-only copy."""
+    @property
+    def com_std(self) -> NDArray[np.float64]:
+        """Standard deviation of each coordinate of `com`, `(3,)` [m]; a read-only copy."""
+    @property
+    def moment(self) -> float:
+        """Moment of inertia about the centre of mass, taken to be the same about all axes [kg m^2]."""
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, strings, and lists in place of arrays.
+        """
+
 @final
 class Motion:
     """A planned motion: where the robot is at each instant, `n` rows at equal distances of time. Read-only.
@@ -703,6 +912,7 @@ class NoiseModel:
             of an observer and the mass matrix; what is given an external torque leaves it out.
         relative: Share of the contact's own torque, scalar or `(nv,)`; a tenth of it also of the largest torque.
         model: Slow errors left over (bias, friction, masses), scalar or `(nv,)` [Nm; N for sliding joints].
+        model_time: Time over which these change, scalar or `(nv,)` [s].
 
     Raises:
         InputError: Names the argument.
@@ -710,7 +920,7 @@ class NoiseModel:
     Example:
         >>> import contactsense as cs
         >>> cs.NoiseModel(model=0.2)
-        NoiseModel(torque=0.05, velocity=0.0, relative=0.03, model=0.2)
+        NoiseModel(torque=0.05, velocity=0.0, relative=0.03, model=0.2, model_time=1.0)
     """
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
@@ -721,6 +931,7 @@ class NoiseModel:
         velocity: ArrayLike = 0.0,
         relative: ArrayLike = 0.03,
         model: ArrayLike = 0.1,
+        model_time: ArrayLike = 1.0,
     ) -> Self: ...
     @property
     def torque(self) -> float | NDArray[np.float64]:
@@ -734,6 +945,15 @@ class NoiseModel:
     @property
     def model(self) -> float | NDArray[np.float64]:
         """Slow errors left over [Nm; N for sliding joints]: a number or `(nv,)`; a read-only copy."""
+    @property
+    def model_time(self) -> float | NDArray[np.float64]:
+        """Time over which slow errors change [s]: a number or `(nv,)`; a read-only copy."""
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, and lists in place of arrays.
+        """
 
 @final
 class ContactIsolator:
@@ -1461,6 +1681,17 @@ class Mode:
     @property
     def spread(self) -> float:
         """Root of the mean squared distance of the mode's particles from their mean [m]."""
+
+def _calibrate(
+    robot: Robot,
+    time: ArrayLike,
+    q: ArrayLike,
+    v: ArrayLike,
+    tau: ArrayLike,
+    false_alarms_per_hour: float,
+    payload_link: str | None,
+) -> Calibration:
+    """From the columns of a log, each flat."""
 
 def exciting_motion(
     robot: Robot,

@@ -2,10 +2,11 @@
 
 use contactsense::NoiseModel;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::errors::{input, to_python};
 use crate::observer::scalar_or_vector;
-use crate::pickle::{reduced, Reduced};
+use crate::pickle::{plain_dict, reduced, Reduced};
 use crate::returned::numbers;
 
 /// Errors of the external torque of the untouched robot, each as one standard deviation.
@@ -18,6 +19,7 @@ use crate::returned::numbers;
 ///         of an observer and the mass matrix; what is given an external torque leaves it out.
 ///     relative: Share of the contact's own torque, scalar or `(nv,)`; a tenth of it also of the largest torque.
 ///     model: Slow errors left over (bias, friction, masses), scalar or `(nv,)` [Nm; N for sliding joints].
+///     model_time: Time over which these change, scalar or `(nv,)` [s].
 ///
 /// Raises:
 ///     InputError: Names the argument.
@@ -25,7 +27,7 @@ use crate::returned::numbers;
 /// Example:
 ///     >>> import contactsense as cs
 ///     >>> cs.NoiseModel(model=0.2)
-///     NoiseModel(torque=0.05, velocity=0.0, relative=0.03, model=0.2)
+///     NoiseModel(torque=0.05, velocity=0.0, relative=0.03, model=0.2, model_time=1.0)
 #[pyclass(frozen, eq, skip_from_py_object, name = "NoiseModel", module = "contactsense")]
 #[derive(PartialEq, Clone)]
 pub struct PyNoiseModel(pub NoiseModel);
@@ -41,14 +43,15 @@ pub fn values<'py>(py: Python<'py>, given: &[f64]) -> PyResult<Bound<'py, PyAny>
 #[pymethods]
 impl PyNoiseModel {
     #[new]
-    #[pyo3(signature = (*, torque=None, velocity=None, relative=None, model=None),
-           text_signature = "(*, torque=0.05, velocity=0.0, relative=0.03, model=0.1)")]
+    #[pyo3(signature = (*, torque=None, velocity=None, relative=None, model=None, model_time=None),
+           text_signature = "(*, torque=0.05, velocity=0.0, relative=0.03, model=0.1, model_time=1.0)")]
     fn new(
         py: Python<'_>,
         torque: Option<&Bound<'_, PyAny>>,
         velocity: Option<&Bound<'_, PyAny>>,
         relative: Option<&Bound<'_, PyAny>>,
         model: Option<&Bound<'_, PyAny>>,
+        model_time: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let mut noise = NoiseModel::default();
         for (name, object, values) in [
@@ -56,6 +59,7 @@ impl PyNoiseModel {
             ("velocity", velocity, &mut noise.velocity),
             ("relative", relative, &mut noise.relative),
             ("model", model, &mut noise.model),
+            ("model_time", model_time, &mut noise.model_time),
         ] {
             if let Some(object) = object {
                 *values = scalar_or_vector(name, object)?;
@@ -89,6 +93,20 @@ impl PyNoiseModel {
         values(py, &self.0.model)
     }
 
+    /// Time over which slow errors change [s]: a number or `(nv,)`; a read-only copy.
+    #[getter]
+    fn model_time<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        values(py, &self.0.model_time)
+    }
+
+    /// All attributes by name.
+    ///
+    /// Returns:
+    ///     Plain Python values: numbers, and lists in place of arrays.
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        plain_dict(slf.as_any(), &["torque", "velocity", "relative", "model", "model_time"])
+    }
+
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, "NoiseModel", &self.0)
     }
@@ -98,9 +116,13 @@ impl PyNoiseModel {
             [value] => format!("{value:?}"),
             _ => format!("{values:?}"),
         };
-        let NoiseModel { torque, velocity, relative, model, .. } = &self.0;
-        let [torque, velocity, relative, model] = [torque, velocity, relative, model].map(|x| shown(x));
-        format!("NoiseModel(torque={torque}, velocity={velocity}, relative={relative}, model={model})")
+        let NoiseModel { torque, velocity, relative, model, model_time } = &self.0;
+        let [torque, velocity, relative] = [torque, velocity, relative].map(|x| shown(x));
+        let [model, model_time] = [model, model_time].map(|x| shown(x));
+        format!(
+            "NoiseModel(torque={torque}, velocity={velocity}, relative={relative}, model={model}, \
+             model_time={model_time})"
+        )
     }
 }
 

@@ -9,6 +9,8 @@ use pyo3::types::{PyBytes, PyDict, PyList, PyTuple};
 use serde::de::DeserializeOwned;
 use serde::Serialize;
 
+use crate::calibration::PyCalibration;
+use crate::calibration_parts::{PyBodyInertia, PyJointFriction, PyPayload};
 use crate::contact::{PyCandidate, PyContact, PyIsolation};
 use crate::errors::{input, refused};
 use crate::estimate::{PyContactEstimate, PyMode};
@@ -64,6 +66,10 @@ pub fn _restore<'py>(
         "ContactReport" => made(py, PyContactReport::from_content(read(content)?)),
         "ContactEstimate" => made(py, PyContactEstimate::from_content(read(content)?)),
         "Mode" => made(py, PyMode::from_content(read(content)?)),
+        "Calibration" => made(py, PyCalibration(read(content)?)),
+        "JointFriction" => made(py, PyJointFriction::from_content(read(content)?)),
+        "BodyInertia" => made(py, PyBodyInertia(read(content)?)),
+        "Payload" => made(py, PyPayload(read(content)?)),
         "Motion" => made(py, PyMotion::new(py, read(content)?)?),
         "NoiseModel" => made(py, PyNoiseModel(read(content)?)),
         "ForceTorqueSensor" => made(py, PyForceTorqueSensor(read(content)?)),
@@ -99,6 +105,13 @@ fn plain<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     if let Ok(tuple) = value.cast::<PyTuple>() {
         let items: Vec<_> = tuple.iter().map(|item| plain(&item)).collect::<PyResult<_>>()?;
         return Ok(PyList::new(value.py(), items)?.into_any());
+    }
+    if let Ok(dict) = value.cast::<PyDict>() {
+        let copy = PyDict::new(value.py());
+        for (key, item) in dict {
+            copy.set_item(key, plain(&item)?)?;
+        }
+        return Ok(copy.into_any());
     }
     for method in ["to_dict", "tolist"] {
         if value.hasattr(method)? {

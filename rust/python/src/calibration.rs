@@ -1,0 +1,289 @@
+//! `Calibration`, and how it is learnt.
+
+use contactsense::calibration::{calibrate, Calibration, CalibrationOptions, Log};
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::arguments::{number, robot, text};
+use crate::arrays::Vector;
+use crate::calibration_parts::{PyBodyInertia, PyJointFriction, PyPayload};
+use crate::errors::{detached, input, to_python};
+use crate::noise::PyNoiseModel;
+use crate::pickle::{plain_dict, reduced, Reduced};
+use crate::returned::{from_rows, numbers, read_only};
+
+/// Base of the class that users have, which adds files.
+#[pyclass(frozen, eq, subclass, skip_from_py_object, name = "Calibration", module = "contactsense")]
+#[derive(PartialEq, Clone)]
+pub struct PyCalibration(pub Calibration);
+
+/// What `to_dict` holds.
+const ATTRIBUTES: &[&str] = &[
+    "robot_name",
+    "fingerprint",
+    "joint_names",
+    "torque_bias",
+    "torque_bias_std",
+    "torque_scale",
+    "torque_is_external",
+    "friction",
+    "armature",
+    "armature_std",
+    "bodies",
+    "payload",
+    "inertial_change",
+    "velocity_delay",
+    "torque_delay",
+    "sensor_offsets",
+    "noise",
+    "residual",
+    "false_alarms_per_hour",
+    "contacts",
+    "notes",
+];
+
+type Array<'py> = Bound<'py, PyArray1<f64>>;
+
+#[pymethods]
+impl PyCalibration {
+    /// From the core's content as JSON, or the same calibration once more.
+    #[new]
+    fn new(py: Python<'_>, content: &Bound<'_, PyAny>) -> PyResult<Self> {
+        if let Ok(calibration) = content.cast::<PyCalibration>() {
+            return Ok(calibration.get().clone());
+        }
+        let Ok(json) = content.extract::<&str>() else {
+            return Err(input(py, "use calibrate or Calibration.load to make a calibration".into()));
+        };
+        let read = serde_json::from_str(json);
+        read.map(Self).map_err(|error| input(py, format!("calibration: {error}")))
+    }
+
+    /// The core's content as JSON.
+    fn _content(&self, py: Python<'_>) -> PyResult<String> {
+        serde_json::to_string(&self.0).map_err(|error| input(py, format!("calibration: {error}")))
+    }
+
+    #[staticmethod]
+    fn _of_description(robot: &Bound<'_, PyAny>) -> PyResult<Self> {
+        Ok(Self(Calibration::of_description(&self::robot(robot)?.get().0)))
+    }
+
+    /// Name of the robot that it is of.
+    #[getter]
+    fn robot_name(&self) -> &str {
+        &self.0.robot
+    }
+
+    /// Of that robot's joints and inertias, to tell it from others.
+    #[getter]
+    fn fingerprint(&self) -> &str {
+        &self.0.fingerprint
+    }
+
+    /// Names of the robot's moving joints, in the order of `v`.
+    #[getter]
+    fn joint_names<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.0.joints)
+    }
+
+    /// Constant torque that the measurement adds, `(nv,)` [Nm; N for sliding joints]; a read-only copy.
+    #[getter]
+    fn torque_bias<'py>(&self, py: Python<'py>) -> Array<'py> {
+        numbers(py, &self.0.torque_bias)
+    }
+
+    /// Standard deviation of `torque_bias`, `(nv,)` [Nm; N for sliding joints]; a read-only copy.
+    #[getter]
+    fn torque_bias_std<'py>(&self, py: Python<'py>) -> Array<'py> {
+        numbers(py, &self.0.torque_bias_std)
+    }
+
+    /// Factor from measured to true torque, its sign included, `(nv,)`; a read-only copy.
+    #[getter]
+    fn torque_scale<'py>(&self, py: Python<'py>) -> Array<'py> {
+        numbers(py, &self.0.torque_scale)
+    }
+
+    /// Whether the torques are external torques of the vendor: then only bias, scale and noise are corrected.
+    #[getter]
+    fn torque_is_external(&self) -> bool {
+        self.0.torque_is_external
+    }
+
+    /// Friction inside the measured torque: a `JointFriction`.
+    #[getter]
+    fn friction(&self) -> PyJointFriction {
+        let Calibration { friction, coulomb_std, viscous_std, .. } = self.0.clone();
+        PyJointFriction { friction, coulomb_std, viscous_std }
+    }
+
+    /// Rotor inertia, reflected through the gear, `(nv,)` [kg m^2; kg for sliding joints]; a read-only copy.
+    #[getter]
+    fn armature<'py>(&self, py: Python<'py>) -> Array<'py> {
+        numbers(py, &self.0.armature)
+    }
+
+    /// Standard deviation of `armature`, `(nv,)` [kg m^2; kg for sliding joints]; a read-only copy.
+    #[getter]
+    fn armature_std<'py>(&self, py: Python<'py>) -> Array<'py> {
+        numbers(py, &self.0.armature_std)
+    }
+
+    /// Inertias of all that moves with each joint, without the payload: a tuple of `BodyInertia`, one a joint.
+    #[getter]
+    fn bodies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.0.bodies.iter().cloned().map(PyBodyInertia))
+    }
+
+    /// What the description lacks on `payload_link`: a `Payload`, or None where none was asked for.
+    #[getter]
+    fn payload(&self) -> Option<PyPayload> {
+        self.0.payload.clone().map(PyPayload)
+    }
+
+    /// The share by which inertias may differ from the description, as held-out blocks of the log chose it.
+    #[getter]
+    fn inertial_change(&self) -> f64 {
+        self.0.inertial_change
+    }
+
+    /// How late the velocity is against the position [s].
+    #[getter]
+    fn velocity_delay(&self) -> f64 {
+        self.0.velocity_delay
+    }
+
+    /// How late the torque is against the position [s].
+    #[getter]
+    fn torque_delay(&self) -> f64 {
+        self.0.torque_delay
+    }
+
+    /// What force/torque sensors read without load, by name: a new dict of `(6,)` arrays [N, Nm].
+    #[getter]
+    fn sensor_offsets<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let offsets = PyDict::new(py);
+        for (name, offset) in &self.0.sensor_offsets {
+            offsets.set_item(name, numbers(py, offset))?;
+        }
+        Ok(offsets)
+    }
+
+    /// Errors of the external torque that are left: a `NoiseModel`.
+    #[getter]
+    fn noise(&self) -> PyNoiseModel {
+        PyNoiseModel(self.0.noise.clone())
+    }
+
+    /// What is left of the low-passed torque, `(nv,)` [Nm; N for sliding joints]; a read-only copy.
+    ///
+    /// Root mean square over blocks of the log that were held out of the fit, behind a low-pass of 8/s (slower where the log has few rows a second).
+    #[getter]
+    fn residual<'py>(&self, py: Python<'py>) -> Array<'py> {
+        numbers(py, &self.0.residual)
+    }
+
+    /// The rate of false alarms that thresholds are set for [1/h].
+    #[getter]
+    fn false_alarms_per_hour(&self) -> f64 {
+        self.0.false_alarms_per_hour
+    }
+
+    /// From when to when contacts were found in the log and left out, `(k, 2)` [s]; a read-only copy.
+    #[getter]
+    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        Ok(read_only(from_rows(py, self.0.contacts.iter().copied())?))
+    }
+
+    /// What the motion could not tell, and which motion would: a tuple of sentences.
+    #[getter]
+    fn notes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.0.notes)
+    }
+
+    /// Whether it is of this robot and can be used.
+    ///
+    /// Args:
+    ///     robot: The robot.
+    ///
+    /// Raises:
+    ///     InputError: The calibration is of another robot, or a number cannot be used; the message says which.
+    fn check(&self, robot: &Bound<'_, PyAny>) -> PyResult<()> {
+        let py = robot.py();
+        let robot = self::robot(robot)?;
+        self.0.check(&robot.get().0).map_err(|error| to_python(py, error))
+    }
+
+    /// All attributes by name.
+    ///
+    /// Returns:
+    ///     Plain Python values: numbers, strings, and lists in place of arrays.
+    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        plain_dict(slf.as_any(), ATTRIBUTES)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, "Calibration", &self.0)
+    }
+
+    fn __repr__(&self) -> String {
+        let largest = self.0.residual.iter().fold(0.0_f64, |largest, x| largest.max(*x));
+        let count = |number: usize, what: &str| match number {
+            0 => String::new(),
+            1 => format!(", 1 {what}"),
+            _ => format!(", {number} {what}s"),
+        };
+        format!(
+            "Calibration('{}', {} joints, residual at most {largest:.3} Nm{}{}{})",
+            self.0.robot,
+            self.0.joints.len(),
+            if self.0.payload.is_some() { ", payload" } else { "" },
+            count(self.0.contacts.len(), "contact"),
+            count(self.0.notes.len(), "note"),
+        )
+    }
+}
+
+/// The argument `calibration`.
+#[allow(dead_code)] // until observers take it
+pub fn calibration<'py>(object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyCalibration>> {
+    let found = object.cast::<PyCalibration>().cloned();
+    found.map_err(|_| {
+        let class = object.get_type();
+        input(object.py(), format!("calibration: expected a contactsense.Calibration, got {class}"))
+    })
+}
+
+/// From the columns of a log, each flat.
+#[pyfunction]
+#[allow(clippy::too_many_arguments)] // the columns of a log
+pub fn _calibrate(
+    robot: &Bound<'_, PyAny>,
+    time: &Bound<'_, PyAny>,
+    q: &Bound<'_, PyAny>,
+    v: &Bound<'_, PyAny>,
+    tau: &Bound<'_, PyAny>,
+    false_alarms_per_hour: &Bound<'_, PyAny>,
+    payload_link: Option<&Bound<'_, PyAny>>,
+) -> PyResult<PyCalibration> {
+    let py = robot.py();
+    let robot = self::robot(robot)?.get().0.clone();
+    let link = |object| {
+        let name = text("payload_link", object)?;
+        robot.link(name).map_err(|_| {
+            let names: Vec<&str> = robot.links().iter().map(|link| link.name.as_str()).collect();
+            input(py, format!("payload_link: there is no link '{name}'; the links are {}", names.join(", ")))
+        })
+    };
+    let options = CalibrationOptions {
+        false_alarms_per_hour: number("false_alarms_per_hour", false_alarms_per_hour)?,
+        payload_link: payload_link.map(link).transpose()?,
+    };
+    let (time, q) = (Vector::new("time", time)?, Vector::new("q", q)?);
+    let (v, tau) = (Vector::new("v", v)?, Vector::new("tau", tau)?);
+    let log = Log { time: time.slice(), q: q.slice(), v: v.slice(), tau: tau.slice() };
+    let calibration = detached(py, || calibrate(&robot, &log, &options))?;
+    calibration.map(PyCalibration).map_err(|error| to_python(py, error))
+}
