@@ -480,6 +480,8 @@ class MomentumObserver:
         robot: The robot.
         dt: Time between two calls [s].
         gain: Scalar or `(nv,)` [1/s].
+        calibration: A `Calibration` of this robot: velocities and torques are corrected, and inertias are those that its
+            motion showed.
 
     Raises:
         InputError: Names the argument.
@@ -975,6 +977,7 @@ class ContactIsolator:
         noise: A `NoiseModel` of the torques, in place of what the thresholds say.
         locate_within: A contact is located if 90 % of the places that explain the torques are within this distance of
             its point [m].
+        calibration: A `Calibration` of this robot, whose noise takes the place of `noise`.
 
     Raises:
         InputError: Names the argument.
@@ -1199,7 +1202,8 @@ class ContactMonitor:
         wanted_contacts: Names of the sensors whose contacts are meant (feet, hands): what touches behind them is no
             collision (eq. 20).
         observer_gain: Of the momentum observer, scalar or `(nv,)` [1/s].
-        torque_threshold: Scalar or `(nv,)` [Nm; N for sliding joints].
+        torque_threshold: Scalar or `(nv,)` [Nm; N for sliding joints]. With a calibration the default is what its noise
+            exceeds at its rate of false alarms.
         wrench_threshold: On external wrenches: scalar, `(6,)` or `(n_sensors, 6)` [N, Nm].
         wrench_gain: Of the low-pass on external wrenches, whose readings and velocities are noisy [1/s]; infinite for
             none. None: the smallest of `observer_gain`, and no low-pass where that is at least `0.5 / dt`.
@@ -1213,6 +1217,8 @@ class ContactMonitor:
         hold_time: A signal stays on so long after it was last over its threshold [s].
         max_contacts: Contacts reported at most.
         pushing: Whether forces push on the surface. If False the point of a contact cannot be determined.
+        calibration: A `Calibration` of this robot: velocities and torques are corrected, inertias are those that its motion
+            showed, and the noise left over sets thresholds and says how well a contact is located.
         locate_within: A contact is located if 90 % of the places that explain the torques are within this distance of
             its point [m].
 
@@ -1442,6 +1448,7 @@ class ContactParticleFilter:
         torque_threshold: Below it on every joint there is no contact, scalar or `(nv,)` [Nm; N for sliding joints]. By
             default three standard deviations at rest where these are more; with `noise` always these.
         noise: A `NoiseModel` in place of `torque_noise` and `relative_noise`.
+        calibration: A `Calibration` of this robot, whose noise takes the place of `noise`.
 
     Raises:
         InputError: Names the argument.

@@ -1,6 +1,7 @@
 //! `Calibration`, and how it is learnt.
 
 use contactsense::calibration::{calibrate, Calibration, CalibrationOptions, Log};
+use contactsense::NoiseModel;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -9,9 +10,41 @@ use crate::arguments::{number, robot, text};
 use crate::arrays::Vector;
 use crate::calibration_parts::{PyBodyInertia, PyJointFriction, PyPayload};
 use crate::errors::{detached, input, to_python};
-use crate::noise::PyNoiseModel;
+use crate::noise::{noise_model, PyNoiseModel};
 use crate::pickle::{plain_dict, reduced, Reduced};
 use crate::returned::{from_rows, numbers, read_only};
+use crate::robot::PyRobot;
+
+/// The argument `calibration`.
+pub fn calibration_of(object: &Bound<'_, PyAny>) -> PyResult<Calibration> {
+    match object.cast::<PyCalibration>() {
+        Ok(calibration) => Ok(calibration.get().0.clone()),
+        Err(_) => {
+            let text = format!("calibration: expected a Calibration, got {}", object.get_type().name()?);
+            Err(input(object.py(), text))
+        }
+    }
+}
+
+/// The arguments `noise` and `calibration`, of which one may be given: what the torques of a robot err by.
+pub fn noise_of(
+    robot: &Bound<'_, PyRobot>,
+    noise: Option<&Bound<'_, PyAny>>,
+    calibration: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Option<NoiseModel>> {
+    match (noise, calibration) {
+        (Some(_), Some(_)) => {
+            Err(input(robot.py(), "noise: give it or calibration, which has its own, not both".into()))
+        }
+        (Some(noise), None) => noise_model(noise).map(Some),
+        (None, Some(calibration)) => {
+            let calibration = calibration_of(calibration)?;
+            calibration.check(&robot.get().0).map_err(|error| to_python(robot.py(), error))?;
+            Ok(Some(calibration.noise))
+        }
+        (None, None) => Ok(None),
+    }
+}
 
 /// Base of the class that users have, which adds files.
 #[pyclass(frozen, eq, subclass, skip_from_py_object, name = "Calibration", module = "contactsense")]

@@ -11,10 +11,10 @@ use pyo3::types::PyTuple;
 
 use crate::arguments::{pushing, robot, sole, whole, Number};
 use crate::arrays::{Readings, Vector};
+use crate::calibration::noise_of;
 use crate::contact::PyIsolation;
 use crate::errors::to_python;
 use crate::names::Names;
-use crate::noise::noise_model;
 use crate::observer::scalar_or_vector;
 use crate::returned::{numbers, wrench_rows};
 use crate::robot::PyRobot;
@@ -44,6 +44,7 @@ pub fn contact_count(object: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
 ///     noise: A `NoiseModel` of the torques, in place of what the thresholds say.
 ///     locate_within: A contact is located if 90 % of the places that explain the torques are within this distance of
 ///         its point [m].
+///     calibration: A `Calibration` of this robot, whose noise takes the place of `noise`.
 ///
 /// Raises:
 ///     InputError: Names the argument.
@@ -82,9 +83,9 @@ struct State {
 impl PyContactIsolator {
     #[new]
     #[pyo3(signature = (robot, *, sensors=None, torque_threshold=None, wrench_threshold=None, wanted_contacts=None,
-                        max_contacts=None, pushing=true, noise=None, locate_within=None),
+                        max_contacts=None, pushing=true, noise=None, locate_within=None, calibration=None),
            text_signature = "(robot, *, sensors=(), torque_threshold=1e-3, wrench_threshold=1e-3, wanted_contacts=(), \
-                             max_contacts=5, pushing=True, noise=None, locate_within=0.05)")]
+                             max_contacts=5, pushing=True, noise=None, locate_within=0.05, calibration=None)")]
     #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
         #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
@@ -96,6 +97,7 @@ impl PyContactIsolator {
         #[pyo3(from_py_with = pushing)] pushing: bool,
         noise: Option<&Bound<'_, PyAny>>,
         locate_within: Option<Number<'_, '_>>,
+        calibration: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let mut options =
             IsolatorOptions { max_contacts: contact_count(max_contacts)?, pushing, ..Default::default() };
@@ -105,9 +107,9 @@ impl PyContactIsolator {
         if let Some(sensors) = sensors {
             options.sensors = self::sensors(sensors)?;
         }
-        if let Some(noise) = noise {
+        if let Some(noise) = noise_of(&robot, noise, calibration)? {
             // The thresholds follow from it, too.
-            (options.noise, options.torque_threshold) = (Some(noise_model(noise)?), None);
+            (options.noise, options.torque_threshold) = (Some(noise), None);
         }
         if let Some(threshold) = torque_threshold {
             options.torque_threshold = Some(scalar_or_vector("torque_threshold", threshold)?);

@@ -11,6 +11,7 @@ use pyo3::types::PyTuple;
 
 use crate::arguments::{number, pushing, robot, sole, Number};
 use crate::arrays::{Readings, Vector};
+use crate::calibration::calibration_of;
 use crate::errors::to_python;
 use crate::isolator::contact_count;
 use crate::names::Names;
@@ -31,7 +32,8 @@ use crate::sensor::{sensor_names, sensor_tuple, sensors, wrench_thresholds};
 ///     wanted_contacts: Names of the sensors whose contacts are meant (feet, hands): what touches behind them is no
 ///         collision (eq. 20).
 ///     observer_gain: Of the momentum observer, scalar or `(nv,)` [1/s].
-///     torque_threshold: Scalar or `(nv,)` [Nm; N for sliding joints].
+///     torque_threshold: Scalar or `(nv,)` [Nm; N for sliding joints]. With a calibration the default is what its noise
+///         exceeds at its rate of false alarms.
 ///     wrench_threshold: On external wrenches: scalar, `(6,)` or `(n_sensors, 6)` [N, Nm].
 ///     wrench_gain: Of the low-pass on external wrenches, whose readings and velocities are noisy [1/s]; infinite for
 ///         none. None: the smallest of `observer_gain`, and no low-pass where that is at least `0.5 / dt`.
@@ -45,6 +47,8 @@ use crate::sensor::{sensor_names, sensor_tuple, sensors, wrench_thresholds};
 ///     hold_time: A signal stays on so long after it was last over its threshold [s].
 ///     max_contacts: Contacts reported at most.
 ///     pushing: Whether forces push on the surface. If False the point of a contact cannot be determined.
+///     calibration: A `Calibration` of this robot: velocities and torques are corrected, inertias are those that its motion
+///         showed, and the noise left over sets thresholds and says how well a contact is located.
 ///     locate_within: A contact is located if 90 % of the places that explain the torques are within this distance of
 ///         its point [m].
 ///
@@ -83,11 +87,11 @@ impl PyContactMonitor {
     #[new]
     #[pyo3(signature = (robot, *, dt, sensors=None, wanted_contacts=None, observer_gain=None, torque_threshold=None,
                         wrench_threshold=None, wrench_gain=None, bias_time_constant=None, bias_limit=None, bias_settle_time=None, hysteresis=None, hold_time=None,
-                        max_contacts=None, pushing=true, locate_within=None),
+                        max_contacts=None, pushing=true, calibration=None, locate_within=None),
            text_signature = "(robot, *, dt, sensors=(), wanted_contacts=(), observer_gain=50.0, torque_threshold=0.5, \
                              wrench_threshold=2.0, wrench_gain=None, bias_time_constant=None, bias_limit=30.0, \
                              bias_settle_time=None, hysteresis=0.2, hold_time=0.02, max_contacts=5, pushing=True, \
-                             locate_within=0.05)")]
+                             calibration=None, locate_within=0.05)")]
     #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
         #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
@@ -105,11 +109,16 @@ impl PyContactMonitor {
         hold_time: Option<Number<'_, '_>>,
         max_contacts: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = pushing)] pushing: bool,
+        calibration: Option<&Bound<'_, PyAny>>,
         locate_within: Option<Number<'_, '_>>,
     ) -> PyResult<Self> {
         let mut options = MonitorOptions::new(dt.named("dt")?);
         if let Some(gain) = observer_gain {
             options.observer_gain = scalar_or_vector("observer_gain", gain)?;
+        }
+        options.calibration = calibration.map(calibration_of).transpose()?;
+        if options.calibration.is_some() {
+            options.isolation.torque_threshold = None;
         }
         if let Some(threshold) = torque_threshold {
             options.isolation.torque_threshold = Some(scalar_or_vector("torque_threshold", threshold)?);

@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 
 use crate::arguments::{number_if_any, robot, sole, Number};
 use crate::arrays::Vector;
+use crate::calibration::calibration_of;
 use crate::errors::to_python;
 use crate::returned::numbers;
 use crate::robot::PyRobot;
@@ -30,6 +31,8 @@ pub fn scalar_or_vector(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<f
 ///     robot: The robot.
 ///     dt: Time between two calls [s].
 ///     gain: Scalar or `(nv,)` [1/s].
+///     calibration: A `Calibration` of this robot: velocities and torques are corrected, and inertias are those that its
+///         motion showed.
 ///
 /// Raises:
 ///     InputError: Names the argument.
@@ -60,15 +63,21 @@ impl PyMomentumObserver {
 #[pymethods]
 impl PyMomentumObserver {
     #[new]
-    #[pyo3(signature = (robot, *, dt, gain=None), text_signature = "(robot, *, dt, gain=50.0)")]
+    #[pyo3(signature = (robot, *, dt, gain=None, calibration=None),
+           text_signature = "(robot, *, dt, gain=50.0, calibration=None)")]
     fn new(
         #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
         dt: Number<'_, '_>,
         gain: Option<&Bound<'_, PyAny>>,
+        calibration: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let py = robot.py();
         let gain = gain.map_or(Ok(vec![50.0]), |gain| scalar_or_vector("gain", gain))?;
-        let observer = MomentumObserver::new(robot.get().0.clone(), dt.named("dt")?, &gain);
+        let (dt, model) = (dt.named("dt")?, &robot.get().0);
+        let observer = match calibration.map(calibration_of).transpose()? {
+            Some(calibration) => MomentumObserver::calibrated(model, dt, &gain, &calibration),
+            None => MomentumObserver::new(model.clone(), dt, &gain),
+        };
         let observer = Mutex::new(observer.map_err(|error| to_python(py, error))?);
         Ok(Self { robot: robot.unbind(), observer })
     }

@@ -15,11 +15,11 @@ use pyo3::types::PyDict;
 
 use crate::arguments::{robot, sole, whole, Number};
 use crate::arrays::Vector;
+use crate::calibration::noise_of;
 use crate::errors::{input, to_python};
 use crate::estimate::PyContactEstimate;
 use crate::filter_options::{read_schedule, used_options, Choice};
 use crate::names::Names;
-use crate::noise::noise_model;
 use crate::observer::scalar_or_vector;
 use crate::pickle::arrays_alone;
 use crate::returned::{from_rows, numbers, read_only};
@@ -82,6 +82,7 @@ pub struct Particles {
 ///     torque_threshold: Below it on every joint there is no contact, scalar or `(nv,)` [Nm; N for sliding joints]. By
 ///         default three standard deviations at rest where these are more; with `noise` always these.
 ///     noise: A `NoiseModel` in place of `torque_noise` and `relative_noise`.
+///     calibration: A `Calibration` of this robot, whose noise takes the place of `noise`.
 ///
 /// Raises:
 ///     InputError: Names the argument.
@@ -115,10 +116,10 @@ impl PyContactParticleFilter {
     #[new]
     #[pyo3(signature = (robot, *, particles=None, motion=Choice::of("curvature"), measurement=Choice::of("normal"), friction=None, links=None, seed=None,
         force_range=None, stiffness_range=None, radius_range=None, schedule=None, threads=None,
-        likelihood=Choice::of("gaussian"), torque_noise=None, relative_noise=None, torque_threshold=None, noise=None),
+        likelihood=Choice::of("gaussian"), torque_noise=None, relative_noise=None, torque_threshold=None, noise=None, calibration=None),
         text_signature = "(robot, *, particles=10_000, motion='curvature', measurement='normal', friction=0.5, links=None, \
             seed=0, force_range=(1, 100), stiffness_range=(3e2, 3e4), radius_range=(5e-3, 1.0), schedule='adaptive', \
-            threads=1, likelihood='gaussian', torque_noise=0.02, relative_noise=0.03, torque_threshold=0.2, noise=None)")]
+            threads=1, likelihood='gaussian', torque_noise=0.02, relative_noise=0.03, torque_threshold=0.2, noise=None, calibration=None)")]
     #[allow(clippy::too_many_arguments)] // named in Python
     fn new(
         #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
@@ -138,6 +139,7 @@ impl PyContactParticleFilter {
         relative_noise: Option<Number>,
         torque_threshold: Option<&Bound<'_, PyAny>>,
         noise: Option<&Bound<'_, PyAny>>,
+        calibration: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let py = robot.py();
         let cone = ForceModel::FrictionCone(friction.map_or(FRICTION, |friction| friction.0));
@@ -183,10 +185,14 @@ impl PyContactParticleFilter {
                 *range = Vector::new(name, object)?.fixed::<2>(py, name)?;
             }
         }
-        if noise.is_some() && (torque_noise.is_some() || relative_noise.is_some()) {
-            return Err(input(py, "noise: give it or torque_noise and relative_noise, not both".into()));
+        if (noise.is_some() || calibration.is_some()) && (torque_noise.is_some() || relative_noise.is_some())
+        {
+            return Err(input(
+                py,
+                "noise: give it (or calibration) or torque_noise and relative_noise, not both".into(),
+            ));
         }
-        options.noise = noise.map(noise_model).transpose()?;
+        options.noise = noise_of(&robot, noise, calibration)?;
         if let Some(noise) = torque_noise {
             options.torque_noise = scalar_or_vector("torque_noise", noise)?;
         }

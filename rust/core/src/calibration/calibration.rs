@@ -238,7 +238,7 @@ impl Calibration {
         }
     }
 
-    #[allow(dead_code)] // until observers take it
+    /// What corrects velocities and torques.
     pub(crate) fn torque_model(&self) -> TorqueModel {
         let delays = [self.velocity_delay, self.torque_delay];
         TorqueModel::new(&self.torque_scale, &self.torque_bias, &self.friction, delays)

@@ -17,6 +17,7 @@ mod pseudo_inertia;
 pub(crate) mod rows;
 mod smooth;
 mod solve;
+mod threshold;
 mod torque_model;
 mod unknowns;
 
@@ -24,6 +25,7 @@ pub use calibrate::calibrate;
 pub use calibration::{BodyInertia, Calibration, CalibrationOptions, Payload};
 pub use excitation::{exciting_motion, Excitation, ExcitationPlanner, Motion};
 pub use log::Log;
+pub(crate) use torque_model::TorqueModel;
 pub use torque_model::{Friction, Reversal};
 
 /// A step from row to row that is so many times the usual one is a gap.

@@ -61,8 +61,15 @@ impl ContactMonitor {
     /// [`crate::Error::Input`] names the option.
     pub fn new(robot: Arc<Robot>, options: &MonitorOptions) -> Result<Self> {
         let nv = robot.nv();
-        let observer =
-            MomentumObserver::new(robot.clone(), options.dt, &options.observer_gain).map_err(of_observer)?;
+        let observer = match &options.calibration {
+            Some(calibration) => {
+                MomentumObserver::calibrated(&robot, options.dt, &options.observer_gain, calibration)
+            }
+            None => MomentumObserver::new(robot, options.dt, &options.observer_gain),
+        };
+        let observer = observer.map_err(of_observer)?;
+        let robot = Arc::clone(observer.robot());
+        let options = &options.with_calibrated_noise(&robot, observer.gain())?;
         let tree = SensorTree::new(&robot, &options.isolation.sensors)?;
         let (threshold, _) = options.isolation.threshold_and_noise(&robot)?;
         let detector = Detector::new(

@@ -1,5 +1,6 @@
 //! Settings of the monitor.
 
+use crate::calibration::Calibration;
 use crate::detection::ReleaseRule;
 use crate::error::{Error, Result};
 use crate::isolation::IsolatorOptions;
@@ -31,6 +32,9 @@ pub struct MonitorOptions {
     pub dt: f64,
     /// Per velocity variable, or one for all (1/s).
     pub observer_gain: Vec<f64>,
+    /// What contact-free motion taught of the robot: corrects measurements and inertias, and gives thresholds and noise
+    /// where `isolation` has none.
+    pub calibration: Option<Calibration>,
     /// Of the low-pass on the sensors' external wrenches (1/s), infinite for no low-pass. If none, the
     /// observer's smallest, and no low-pass where that is at least half the tick rate.
     pub wrench_gain: Option<f64>,
@@ -62,6 +66,7 @@ impl MonitorOptions {
         Self {
             dt,
             observer_gain: vec![50.0],
+            calibration: None,
             wrench_gain: None,
             isolation: IsolatorOptions {
                 torque_threshold: Some(vec![0.5]),
@@ -74,6 +79,18 @@ impl MonitorOptions {
             bias_settle_time: None,
             hysteresis: vec![HYSTERESIS],
         }
+    }
+
+    /// With the noise of the calibration, and thresholds for its rate of false alarms, where none are given; `gain` `(nv,)`
+    /// is the observer's.
+    pub(super) fn with_calibrated_noise(&self, corrected: &Robot, gain: &[f64]) -> Result<Self> {
+        let mut options = self.clone();
+        if let Some(calibration) = &self.calibration {
+            let (noise, threshold) = calibration.noise_and_threshold(corrected, gain, self.dt)?;
+            options.isolation.noise.get_or_insert(noise);
+            options.isolation.torque_threshold.get_or_insert(threshold);
+        }
+        Ok(options)
     }
 
     /// The rule for the end of a contact, with checked thresholds `(nv,)`.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::step::Step;
+use crate::calibration::{Calibration, TorqueModel};
 use crate::error::{Error, Result};
 use crate::robot::configuration::spread_torque;
 use crate::robot::{ForwardDynamics, Kinematics, MomentumPass, Robot};
@@ -35,6 +36,8 @@ use crate::sample::{check_time_step, Sample};
 #[derive(Debug, Clone)]
 pub struct MomentumObserver {
     robot: Arc<Robot>,
+    /// Corrects velocities and torques, where the robot is calibrated.
+    calibration: Option<TorqueModel>,
     dt: f64,
     gain: Vec<f64>,
     /// `exp(-gain dt)` for the `dt` of the constructor.
@@ -85,8 +88,18 @@ impl MomentumObserver {
             acceleration: zeros,
             acceleration_is_current: true,
             started: false,
+            calibration: None,
             robot,
         })
+    }
+
+    /// The same of a calibrated robot: velocities and torques are corrected, and inertias are those that its motion showed.
+    ///
+    /// # Errors
+    /// [`Error::Input`] also where the calibration is of another robot.
+    pub fn calibrated(robot: &Robot, dt: f64, gain: &[f64], calibration: &Calibration) -> Result<Self> {
+        let robot = Arc::new(calibration.corrected(robot)?);
+        Ok(Self { calibration: Some(calibration.torque_model()), ..Self::new(robot, dt, gain)? })
     }
 
     /// One control tick; returns the external torque `(nv,)`.
@@ -106,11 +119,19 @@ impl MomentumObserver {
         let Sample { q, v, tau, friction, .. } = *sample;
         std::mem::swap(&mut self.momentum, &mut self.momentum_before);
         std::mem::swap(&mut self.known_rate, &mut self.known_rate_before);
+        self.velocity.copy_from_slice(v);
+        spread_torque(tau, &mut self.motor_torque);
+        if let Some(calibration) = &mut self.calibration {
+            if step.is_gap() || !self.started {
+                calibration.reset();
+            }
+            let length = if self.started { step.length(self.dt) } else { 0.0 };
+            calibration.correct(length, &mut self.velocity, &mut self.motor_torque);
+        }
+        let v = &self.velocity;
         self.kinematics.set_configuration(&self.robot, q);
         self.kinematics.set_velocity(&self.robot, v);
         self.pass.evaluate(&self.robot, &self.kinematics, v, &mut self.momentum, &mut self.known_rate);
-        self.velocity.copy_from_slice(v);
-        spread_torque(tau, &mut self.motor_torque);
         if let Some(friction) = friction {
             let missing = self.motor_torque.len() - friction.len();
             self.motor_torque[missing..].iter_mut().zip(friction).for_each(|(tau, f)| *tau -= f);
