@@ -12,6 +12,7 @@ use super::friction::choose_reversals;
 use super::log::Log;
 use super::noise::{estimate, Judged};
 use super::normal::Joints;
+use super::notes::{notes, JointFacts};
 use super::rows::{rows, Filter, Row, Term};
 use super::smooth::smooth_velocity;
 use super::solve::Solution;
@@ -125,6 +126,7 @@ impl Fit {
             (0..nv).map(|j| f64::sqrt(variance(j))).collect::<Vec<f64>>()
         };
         let step_of = |rows: [usize; 2]| rows.map(|row| log.time[self.rows[row].index]);
+        let contacts: Vec<[f64; 2]> = stretches(&self.used).into_iter().map(step_of).collect();
         let without_payload = unknowns.without_payload(z);
         Ok(Calibration {
             torque_bias: term(BIAS),
@@ -146,9 +148,32 @@ impl Fit {
             noise: self.noise(robot, log, step)?,
             residual: (0..nv).map(|j| mean_square(&self.held_out.residuals, &self.used, j).sqrt()).collect(),
             false_alarms_per_hour: options.false_alarms_per_hour,
-            contacts: stretches(&self.used).into_iter().map(step_of).collect(),
+            notes: self.notes(robot, log, &contacts),
+            contacts,
             ..Calibration::of_description(robot)
         })
+    }
+
+    fn notes(&self, robot: &Robot, log: &Log<'_>, contacts: &[[f64; 2]]) -> Vec<String> {
+        let facts = |joint: usize| {
+            let uncertain = |term: usize| {
+                let k = self.unknowns.term(joint, term);
+                self.covariance[(k, k)].sqrt() / self.solution.units[k]
+            };
+            let torques = self.rows.iter().map(|row| log.tau_of(row.index)[joint]);
+            let count = self.rows.len() as f64;
+            let mean = torques.clone().sum::<f64>() / count;
+            let variance = torques.map(|tau| (tau - mean).powi(2)).sum::<f64>() / count;
+            let left = mean_square(&self.held_out.residuals, &self.used, joint);
+            JointFacts {
+                name: &robot.joint_names()[joint],
+                uncertain: std::array::from_fn(uncertain),
+                left: left / variance.max(f64::MIN_POSITIVE),
+                speed: (0..log.len()).map(|row| log.v_of(robot, row)[joint].abs()).fold(0.0, f64::max),
+            }
+        };
+        let facts: Vec<JointFacts<'_>> = (0..robot.nv()).map(facts).collect();
+        notes(&facts, contacts, self.held_out.change)
     }
 
     /// The payload, with its uncertainty.

@@ -13,6 +13,7 @@ mod lead;
 mod log;
 mod noise;
 mod normal;
+mod notes;
 mod pseudo_inertia;
 pub(crate) mod rows;
 mod smooth;
