@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import os
-from datetime import date
 from pathlib import Path
 from typing import Any
 
 from .. import _core
 from ..errors import InputError
-from .read_file import content_of
-from .write_file import written
 
 
 class Calibration(_core.Calibration):
@@ -52,6 +48,10 @@ class Calibration(_core.Calibration):
             InputError: the file cannot be read, or an entry is missing, unknown or wrong; names the file, the
                 joint and the entry.
         """
+        import json  # YAML and these take milliseconds that few programs need
+
+        from .read_file import content_of
+
         file = os.fspath(path)
         try:
             text = Path(file).read_text(encoding="utf-8")
@@ -71,6 +71,11 @@ class Calibration(_core.Calibration):
         Raises:
             InputError: the file cannot be written, or `source` is no text.
         """
+        import json
+        from datetime import date
+
+        from .write_file import written
+
         if not isinstance(source, str):
             raise InputError(f"source: expected a string, got {source!r}")
         text = written(json.loads(self._content()), _core.__version__, source, date.today().isoformat())

@@ -8,7 +8,7 @@ use pyo3::types::{PyDict, PyTuple};
 use crate::arguments::{number, robot, text};
 use crate::arrays::Vector;
 use crate::calibration_parts::{PyBodyInertia, PyJointFriction, PyPayload};
-use crate::errors::{detached, input, to_python};
+use crate::errors::{input, interruptible, to_python};
 use crate::noise::PyNoiseModel;
 use crate::pickle::{plain_dict, reduced, Reduced};
 use crate::returned::{from_rows, numbers, read_only};
@@ -236,9 +236,10 @@ impl PyCalibration {
             _ => format!(", {number} {what}s"),
         };
         format!(
-            "Calibration('{}', {} joints, residual at most {largest:.3} Nm{}{}{})",
+            "Calibration('{}', {} joints, residual at most {} Nm{}{}{})",
             self.0.robot,
             self.0.joints.len(),
+            if (1e-3..1e4).contains(&largest) { format!("{largest:.3}") } else { format!("{largest:.2e}") },
             if self.0.payload.is_some() { ", payload" } else { "" },
             count(self.0.contacts.len(), "contact"),
             count(self.0.notes.len(), "note"),
@@ -283,7 +284,10 @@ pub fn _calibrate(
     };
     let (time, q) = (Vector::new("time", time)?, Vector::new("q", q)?);
     let (v, tau) = (Vector::new("v", v)?, Vector::new("tau", tau)?);
-    let log = Log { time: time.slice(), q: q.slice(), v: v.slice(), tau: tau.slice() };
-    let calibration = detached(py, || calibrate(&robot, &log, &options))?;
+    let work = move || {
+        let log = Log { time: time.slice(), q: q.slice(), v: v.slice(), tau: tau.slice() };
+        calibrate(&robot, &log, &options)
+    };
+    let calibration = interruptible(py, work)?;
     calibration.map(PyCalibration).map_err(|error| to_python(py, error))
 }
