@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from robots import robot_named
+from robots import parameters, robot_named
 
 import contactsense as cs
 from contactsense.calibration.file_layout import content_keys
@@ -87,7 +87,7 @@ def test_what_is_saved_is_loaded(tmp_path: Path) -> None:
     assert plain["joints"]["iiwa_joint_2"]["torque_scale"] == -1.0
 
 
-@pytest.mark.parametrize("name", ["iiwa14", "panda", "kinova", "xarm7", "ur5"])
+@pytest.mark.parametrize("name", parameters(["iiwa14", "panda", "kinova", "xarm7", "ur5"]))
 def test_descriptions_are_saved_and_loaded(tmp_path: Path, name: str) -> None:
     robot = robot_named(name)
     before = cs.Calibration.of_description(robot)
@@ -222,6 +222,13 @@ def test_files_that_cannot_be_opened(tmp_path: Path) -> None:
         cs.Calibration.load(tmp_path / "nowhere.yaml")
     with pytest.raises(cs.InputError, match="path: cannot write"):
         full().save(tmp_path)
+    for path in (3, None, b"arm.yaml"):
+        with pytest.raises(cs.InputError, match="path: expected a path"):
+            cs.Calibration.load(path)  # type: ignore[arg-type]
+        with pytest.raises(cs.InputError, match="path: expected a path"):
+            full().save(path)  # type: ignore[arg-type]
+    with pytest.raises(cs.InputError, match="path: cannot read"):
+        cs.Calibration.load("arm\0.yaml")
     with pytest.raises(cs.InputError, match="source"):
         full().save(tmp_path / "arm.yaml", source=3)  # type: ignore[arg-type]
 

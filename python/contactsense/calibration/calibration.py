@@ -52,12 +52,12 @@ class Calibration(_core.Calibration):
 
         from .read_file import content_of
 
-        file = os.fspath(path)
+        file = _file(path)
         try:
-            text = Path(file).read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as error:
+            text = file.read_text(encoding="utf-8")
+        except (OSError, ValueError) as error:  # no file; no UTF-8, or a name that cannot be one
             raise InputError(f"path: cannot read {file}: {error}") from error
-        return cls(json.dumps(content_of(file, text)))
+        return cls(json.dumps(content_of(str(file), text)))
 
     def save(self, path: str | os.PathLike[str], *, source: str = "") -> None:
         """Writes a YAML file keyed by the names of joints and links, with units, for people to read and edit.
@@ -78,11 +78,12 @@ class Calibration(_core.Calibration):
 
         if not isinstance(source, str):
             raise InputError(f"source: expected a string, got {source!r}")
+        file = _file(path)
         text = written(json.loads(self._content()), _core.__version__, source, date.today().isoformat())
         try:
-            Path(path).write_text(text, encoding="utf-8")
-        except OSError as error:
-            raise InputError(f"path: cannot write {os.fspath(path)}: {error}") from error
+            file.write_text(text, encoding="utf-8")
+        except (OSError, ValueError) as error:
+            raise InputError(f"path: cannot write {file}: {error}") from error
 
     def __reduce__(self) -> tuple[Any, ...]:
         restore, content = super().__reduce__()
@@ -93,6 +94,13 @@ class Calibration(_core.Calibration):
 
     def __deepcopy__(self, memo: Any) -> Calibration:
         return self
+
+
+def _file(path: str | os.PathLike[str]) -> Path:
+    try:
+        return Path(path)
+    except TypeError:
+        raise InputError(f"path: expected a path, got {path!r}") from None
 
 
 def _restore(restore: Any, content: Any) -> Calibration:

@@ -8,6 +8,7 @@ from typing import Any
 
 import yaml
 
+from ..errors import InputError
 from .file_layout import (
     FORMAT,
     JOINT_FIELDS,
@@ -121,7 +122,7 @@ def _rest(content: dict[str, Any]) -> Iterator[str]:
     yield from (f"  - {text(note)}" for note in notes)
 
 
-def _entry(margin: str, field: Field, value: float) -> str:
+def _entry(margin: str, field: Field, value: float | None) -> str:
     return f"{margin}{field.name}: {number(value)}  # {field.unit}"
 
 
@@ -132,8 +133,10 @@ def _at(content: dict[str, Any], field: Field) -> Any:
     return found
 
 
-def number(value: float) -> str:
-    """A number, as YAML reads it."""
+def number(value: float | None) -> str:
+    """A number, as YAML reads it; none is what JSON makes of one that is not finite."""
+    if value is None:
+        raise InputError("calibration: holds a number that is not finite, which no file can keep")
     short = f"{value:.{DIGITS}g}"
     mantissa, e, exponent = short.partition("e")
     if "." not in mantissa:
@@ -141,7 +144,7 @@ def number(value: float) -> str:
     return mantissa + e + exponent
 
 
-def numbers(values: Iterable[float]) -> str:
+def numbers(values: Iterable[float | None]) -> str:
     """A list of numbers."""
     return f"[{', '.join(map(number, values))}]"
 
