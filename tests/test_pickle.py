@@ -161,7 +161,7 @@ def test_to_dict_holds_all_attributes_as_plain_values(objects, name):
     for key, value in plain.items():
         held = getattr(objects[name], key)
         if isinstance(held, np.ndarray):
-            assert np.array_equal(np.array(value), held, equal_nan=True)
+            assert np.array_equal(np.array(value).reshape(held.shape), held, equal_nan=True)
             assert isinstance(value, list)
 
 

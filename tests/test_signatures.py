@@ -25,6 +25,8 @@ SIGNATURES = {
     "NoiseModel": "*, torque=0.05, velocity=0.0, relative=0.03, model=0.1, model_time=1.0",
     "calibrate": "robot, log, *, false_alarms_per_hour=1.0, payload_link=None",
     "Calibration.of_description": "robot",
+    "Calibration.load": "path",
+    "Calibration.save": "path, *, source=''",
     "Calibration.check": "robot",
     "Calibration.to_dict": "",
     "JointFriction.to_dict": "",
@@ -86,6 +88,8 @@ IN_PYTHON = {
     "Robot.named",
     "Robot.with_payload",
     "Calibration.of_description",
+    "Calibration.load",
+    "Calibration.save",
     "calibrate",
 }
 

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
 from typing import Any
 
 from .. import _core
+from ..errors import InputError
 
 
 class Calibration(_core.Calibration):
-    """What contact-free motion teaches of one robot; make one with `calibrate`.
+    """What contact-free motion teaches of one robot; make one with `calibrate`, or `load` it.
 
     Vectors are by velocity variable, in the order of `joint_names`. Frozen; equal where all numbers are; can
     be pickled and copied.
@@ -32,6 +35,56 @@ class Calibration(_core.Calibration):
         """
         return cls(_core.Calibration._of_description(robot))
 
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Calibration:
+        """A calibration from a file that `save` wrote, perhaps edited since. No robot is needed.
+
+        Whether it fits a robot is known when it is used, or by `check`.
+
+        Args:
+            path: of the file.
+
+        Raises:
+            InputError: the file cannot be read, or an entry is missing, unknown or wrong; names the file, the
+                joint and the entry.
+        """
+        import json  # YAML and these take milliseconds that few programs need
+
+        from .read_file import content_of
+
+        file = _file(path)
+        try:
+            text = file.read_text(encoding="utf-8")
+        except (OSError, ValueError) as error:  # no file; no UTF-8, or a name that cannot be one
+            raise InputError(f"path: cannot read {file}: {error}") from error
+        return cls(json.dumps(content_of(str(file), text)))
+
+    def save(self, path: str | os.PathLike[str], *, source: str = "") -> None:
+        """Writes a YAML file keyed by the names of joints and links, with units, for people to read and edit.
+
+        Numbers have ten digits.
+
+        Args:
+            path: of the file; one that exists is replaced.
+            source: where the calibration is from, such as the name of the log; kept in the file only.
+
+        Raises:
+            InputError: the file cannot be written, or `source` is no text.
+        """
+        import json
+        from datetime import date
+
+        from .write_file import written
+
+        if not isinstance(source, str):
+            raise InputError(f"source: expected a string, got {source!r}")
+        file = _file(path)
+        text = written(json.loads(self._content()), _core.__version__, source, date.today().isoformat())
+        try:
+            file.write_text(text, encoding="utf-8")
+        except (OSError, ValueError) as error:
+            raise InputError(f"path: cannot write {file}: {error}") from error
+
     def __reduce__(self) -> tuple[Any, ...]:
         restore, content = super().__reduce__()
         return _restore, (restore, content)
@@ -41,6 +94,13 @@ class Calibration(_core.Calibration):
 
     def __deepcopy__(self, memo: Any) -> Calibration:
         return self
+
+
+def _file(path: str | os.PathLike[str]) -> Path:
+    try:
+        return Path(path)
+    except TypeError:
+        raise InputError(f"path: expected a path, got {path!r}") from None
 
 
 def _restore(restore: Any, content: Any) -> Calibration:

@@ -9,7 +9,7 @@ use pyo3::types::{PyDict, PyTuple};
 use crate::arguments::{number, robot, text};
 use crate::arrays::Vector;
 use crate::calibration_parts::{PyBodyInertia, PyJointFriction, PyPayload};
-use crate::errors::{detached, input, to_python};
+use crate::errors::{input, interruptible, to_python};
 use crate::noise::{noise_model, PyNoiseModel};
 use crate::pickle::{plain_dict, reduced, Reduced};
 use crate::returned::{from_rows, numbers, read_only};
@@ -20,7 +20,7 @@ pub fn calibration_of(object: &Bound<'_, PyAny>) -> PyResult<Calibration> {
     match object.cast::<PyCalibration>() {
         Ok(calibration) => Ok(calibration.get().0.clone()),
         Err(_) => {
-            let text = format!("calibration: expected a Calibration, got {}", object.get_type().name()?);
+            let text = format!("calibration: expected a contactsense.Calibration, got {}", object.get_type());
             Err(input(object.py(), text))
         }
     }
@@ -269,24 +269,15 @@ impl PyCalibration {
             _ => format!(", {number} {what}s"),
         };
         format!(
-            "Calibration('{}', {} joints, residual at most {largest:.3} Nm{}{}{})",
+            "Calibration('{}', {} joints, residual at most {} Nm{}{}{})",
             self.0.robot,
             self.0.joints.len(),
+            if (1e-3..1e4).contains(&largest) { format!("{largest:.3}") } else { format!("{largest:.2e}") },
             if self.0.payload.is_some() { ", payload" } else { "" },
             count(self.0.contacts.len(), "contact"),
             count(self.0.notes.len(), "note"),
         )
     }
-}
-
-/// The argument `calibration`.
-#[allow(dead_code)] // until observers take it
-pub fn calibration<'py>(object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyCalibration>> {
-    let found = object.cast::<PyCalibration>().cloned();
-    found.map_err(|_| {
-        let class = object.get_type();
-        input(object.py(), format!("calibration: expected a contactsense.Calibration, got {class}"))
-    })
 }
 
 /// From the columns of a log, each flat.
@@ -316,7 +307,10 @@ pub fn _calibrate(
     };
     let (time, q) = (Vector::new("time", time)?, Vector::new("q", q)?);
     let (v, tau) = (Vector::new("v", v)?, Vector::new("tau", tau)?);
-    let log = Log { time: time.slice(), q: q.slice(), v: v.slice(), tau: tau.slice() };
-    let calibration = detached(py, || calibrate(&robot, &log, &options))?;
+    let work = move || {
+        let log = Log { time: time.slice(), q: q.slice(), v: v.slice(), tau: tau.slice() };
+        calibrate(&robot, &log, &options)
+    };
+    let calibration = interruptible(py, work)?;
     calibration.map(PyCalibration).map_err(|error| to_python(py, error))
 }

@@ -1,6 +1,10 @@
 //! The package's exceptions, and the core's errors as such.
 
+use std::any::Any;
 use std::panic::{catch_unwind, AssertUnwindSafe};
+use std::sync::mpsc::{channel, RecvTimeoutError};
+use std::thread::Builder;
+use std::time::Duration;
 
 use contactsense::Error;
 use pyo3::exceptions::{PyException, PyMemoryError, PyValueError};
@@ -119,13 +123,36 @@ pub fn refused(py: Python<'_>, cause: PyErr, text: impl FnOnce() -> String) -> P
 
 /// Runs long work while other Python threads run. A panic in it, a bug of this library, is a `ContactSenseError`.
 pub fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
-    py.detach(|| catch_unwind(AssertUnwindSafe(work))).map_err(|panic| {
-        let said = panic.downcast_ref::<String>().map(String::as_str);
-        let said = said.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no message");
-        let text = format!("internal error of contactsense, please report it: {said}");
-        match classes(py) {
-            Ok(classes) => PyErr::from_type(classes.root.bind(py).clone(), text),
-            Err(error) => error,
+    py.detach(|| catch_unwind(AssertUnwindSafe(work))).map_err(|panic| panicked(py, &*panic))
+}
+
+/// The same on a thread of its own, so that Ctrl-C ends the call; the thread then still ends its work, which nobody sees.
+pub fn interruptible<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> PyResult<T> {
+    let (done, mut result) = channel();
+    let thread = move || _ = done.send(catch_unwind(AssertUnwindSafe(work)));
+    Builder::new().spawn(thread).map_err(|error| PyMemoryError::new_err(format!("no thread: {error}")))?;
+    loop {
+        let waiting = &mut result;
+        match py.detach(move || waiting.recv_timeout(SIGNALS_SEEN_WITHIN)) {
+            Ok(found) => return found.map_err(|panic| panicked(py, &*panic)),
+            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(RecvTimeoutError::Disconnected) => return Err(panicked(py, &"the thread is gone")),
         }
-    })
+    }
+}
+
+/// How long Ctrl-C waits: no person notices.
+const SIGNALS_SEEN_WITHIN: Duration = Duration::from_millis(50);
+
+fn panicked(py: Python<'_>, panic: &(dyn Any + Send)) -> PyErr {
+    let said = panic.downcast_ref::<String>().map(String::as_str);
+    let said = said.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no message");
+    let text = format!("internal error of contactsense, please report it: {said}");
+    match classes(py) {
+        Ok(classes) => PyErr::from_type(classes.root.bind(py).clone(), text),
+        Err(error) => error,
+    }
 }

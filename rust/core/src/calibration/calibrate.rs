@@ -11,7 +11,7 @@ use super::folds::{enough, fit, hold_out, mean_square, HeldOut};
 use super::friction::choose_reversals;
 use super::log::Log;
 use super::noise::{estimate, Judged};
-use super::normal::Joints;
+use super::normal::{own_terms, Joints};
 use super::notes::{notes, JointFacts};
 use super::rows::{rows, Filter, Row, Term};
 use super::smooth::smooth_velocity;
@@ -35,8 +35,8 @@ const MEMORY: usize = 1 << 28;
 const ROUNDS: usize = 3;
 /// After a contact the filters need so many time constants to forget it.
 const FORGOTTEN: f64 = 3.0;
-/// Standard deviation of a rotor inertia before the log is seen, as a share of the link inertia that the joint moves.
-const ROTOR_SHARE: f64 = 1.0;
+/// Rows that are further apart say nothing of inertia (s).
+const LONGEST_STEP: f64 = 0.1;
 /// A centre of mass that is less certain is unknown (m).
 const UNKNOWN: f64 = 1.0;
 /// Correlations smaller than this end the sum.
@@ -90,14 +90,15 @@ impl Fit {
             );
             return Err(Error::input("log", text));
         }
-        let unknowns = Unknowns::new(robot, options.payload_link, term_units(robot, log, &rows)?);
+        let unknowns = Unknowns::new(robot, options.payload_link, term_units(robot, log, &rows));
         let nv = robot.nv();
         let unexplained: Vec<DVector<f64>> = rows.iter().map(|row| row.unexplained.clone()).collect();
         let mut used = vec![true; rows.len()];
         let weights = (0..nv).map(|j| weight(&unexplained, &used, j)).collect();
         let mut joints = Joints { weights, friction: vec![0; nv] };
         let margin = (FORGOTTEN / filter.gain / filter.spacing).ceil() as usize;
-        let failed = || Error::input("log", "cannot be fitted: the regression is singular");
+        let failed =
+            || Error::input("log", "cannot be fitted: joints must move, and torques must be of a usual size");
         let mut held_out = hold_out(&unknowns, &joints, &rows, &used).ok_or_else(failed)?;
         for _ in 0..ROUNDS {
             used = without_contact(&held_out.residuals, margin);
@@ -268,44 +269,46 @@ fn terms() -> Vec<Term> {
 fn median_step(log: &Log<'_>) -> Result<f64> {
     let mut steps: Vec<f64> = log.time.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_by(f64::total_cmp);
-    let middle = steps.get(steps.len() / 2).copied();
-    middle.ok_or_else(|| Error::input("log", "must have rows: record at least 10 s of motion"))
+    match steps.get(steps.len() / 2) {
+        Some(step) if *step <= LONGEST_STEP => Ok(*step),
+        Some(step) => {
+            Err(Error::input("log", format!("has rows {step:.3} s apart; record at least 20 rows a second")))
+        }
+        None => Err(Error::input("log", "must have rows: record at least 10 s of motion")),
+    }
 }
 
 fn filter_of(robot: &Robot, log: &Log<'_>, step: f64) -> Filter {
     let gain = GAIN.min(LARGEST_STEP / step);
     let columns = 10 * (robot.body_count() - 1) + terms().len();
     let most = (MEMORY / (8 * columns * robot.nv())).max(1);
-    let duration = log.time[log.len() - 1] - log.time[0];
+    // Without gaps.
+    let duration = log.len() as f64 * step;
     let spacing = f64::max(1.0 / (ROWS_PER_TIME * gain), duration / most as f64);
     // Not a row later because of rounding.
     Filter { gain, spacing: spacing.max(step) - 0.01 * step, longest_step: super::LONGEST_STEPS * step }
 }
 
-/// How large each term of a joint may be: as its torques are, or as the inertia that it moves.
-fn term_units(robot: &Robot, log: &Log<'_>, rows: &[Row]) -> Result<Vec<[f64; TERMS]>> {
-    let mut units = vec![[0.0; TERMS]; robot.nv()];
-    let mean = 1.0 / rows.len() as f64;
-    for row in rows {
-        let mass = robot.mass_matrix(log.q_of(robot, row.index))?;
-        let (tau, v) = (log.tau_of(row.index), log.v_of(robot, row.index));
-        for (j, unit) in units.iter_mut().enumerate() {
-            unit[BIAS] += tau[j] * tau[j] * mean;
-            unit[VISCOUS] += v[j] * v[j] * mean;
-            unit[ARMATURE] += mass[(j, j)] * mean;
-        }
-    }
-    for unit in &mut units {
-        let (torque, velocity) = (unit[BIAS].sqrt().max(SMALLEST_TORQUE), unit[VISCOUS].sqrt());
-        *unit = [torque, torque, torque / velocity.max(SMALLEST_VELOCITY), ROTOR_SHARE * unit[ARMATURE]];
-    }
-    Ok(units)
+/// How large each term of a joint may be: each alone could be all of its torque.
+fn term_units(robot: &Robot, log: &Log<'_>, rows: &[Row]) -> Vec<[f64; TERMS]> {
+    let root_mean_square = |value: &dyn Fn(&Row) -> f64| {
+        (rows.iter().map(|row| value(row).powi(2)).sum::<f64>() / rows.len() as f64).sqrt()
+    };
+    let unit = |j: usize| {
+        let torque = root_mean_square(&|row| log.tau_of(row.index)[j]).max(SMALLEST_TORQUE);
+        let velocity = root_mean_square(&|row| log.v_of(robot, row.index)[j]).max(SMALLEST_VELOCITY);
+        let acceleration = root_mean_square(&|row| own_terms(row, j, 0)[ARMATURE]).max(SMALLEST_ACCELERATION);
+        [torque, torque, torque / velocity, torque / acceleration]
+    };
+    (0..robot.nv()).map(unit).collect()
 }
 
 /// A joint whose torques are smaller counts as if they were this large (Nm).
 const SMALLEST_TORQUE: f64 = 1e-3;
 /// A joint that moves more slowly counts as if it moved so fast (rad/s; m/s).
 const SMALLEST_VELOCITY: f64 = 1e-2;
+/// One that speeds up more slowly, as if it did so this fast (rad/s^2; m/s^2).
+const SMALLEST_ACCELERATION: f64 = 1e-1;
 
 /// How much a row of one joint counts: one over its mean square, and over the number of rows that err together.
 fn weight(residuals: &[DVector<f64>], used: &[bool], joint: usize) -> f64 {

@@ -1,12 +1,13 @@
 //! What contact-free motion teaches of one robot.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::fingerprint::fingerprint;
 use super::torque_model::{Friction, TorqueModel, REVERSALS};
 use crate::error::{Error, Result};
+use crate::robot::check::principal_moments;
 use crate::robot::inertial_parameters::{of_inertia, to_inertia, Parameters};
-use crate::robot::{LinkIndex, Robot};
+use crate::robot::{LinkIndex, Robot, LARGEST};
 use crate::spatial::Pose;
 use crate::torque::NoiseModel;
 
@@ -184,13 +185,18 @@ impl Calibration {
         let positive = |values: &[f64]| values.iter().all(|x| *x >= 0.0);
         let columns = [
             ("torque_bias", &self.torque_bias, true),
+            ("torque_bias_std", &self.torque_bias_std, positive(&self.torque_bias_std)),
+            ("coulomb_std", &self.coulomb_std, positive(&self.coulomb_std)),
+            ("viscous_std", &self.viscous_std, positive(&self.viscous_std)),
+            ("armature_std", &self.armature_std, positive(&self.armature_std)),
+            ("residual", &self.residual, positive(&self.residual)),
             ("torque_scale", &self.torque_scale, !self.torque_scale.contains(&0.0)),
             ("friction.coulomb", &self.friction.coulomb, positive(&self.friction.coulomb)),
             ("friction.viscous", &self.friction.viscous, positive(&self.friction.viscous)),
             ("armature", &self.armature, positive(&self.armature)),
         ];
         for (name, values, is_right) in columns {
-            if values.len() != robot.nv() || !is_right || !values.iter().all(|x| x.is_finite()) {
+            if values.len() != robot.nv() || !is_right || !values.iter().all(|x| x.abs() < LARGEST) {
                 let text = format!("{name}: must be {} finite numbers, none with a wrong sign", robot.nv());
                 return Err(Error::input("calibration", text));
             }
@@ -203,6 +209,21 @@ impl Calibration {
         if self.bodies.len() != robot.body_count() - 1 {
             let text = format!("bodies: must be {}, one a joint", robot.body_count() - 1);
             return Err(Error::input("calibration", text));
+        }
+        for body in &self.bodies {
+            let numbers = body.com.iter().chain(&body.inertia).chain([&body.mass]);
+            let moments = principal_moments(&inertia_matrix(&body.inertia));
+            let is_body = numbers.clone().all(|x| x.abs() < LARGEST) && body.mass >= 0.0;
+            if !is_body || moments.is_ok_and(|moments| moments[0] < -NEGATIVE * moments[2].abs()) {
+                let text = format!("bodies: mass and inertia of '{}' must be those of a body", body.link);
+                return Err(Error::input("calibration", text));
+            }
+        }
+        if self.payload.as_ref().is_some_and(|payload| !(payload.mass >= 0.0 && payload.moment >= 0.0)) {
+            return Err(Error::input("calibration", "payload: mass and moment must not be negative"));
+        }
+        if !(self.false_alarms_per_hour > 0.0 && self.false_alarms_per_hour.is_finite()) {
+            return Err(Error::input("calibration", "false_alarms_per_hour: must be positive"));
         }
         for (name, delay) in [("velocity_delay", self.velocity_delay), ("torque_delay", self.torque_delay)] {
             if !(0.0..LONGEST_DELAY).contains(&delay) {
@@ -222,16 +243,13 @@ impl Calibration {
         let bodies = self.bodies.iter().enumerate().map(|(index, body)| {
             let placement = moved_link(robot, index).map_or_else(Pose::identity, |(_, placement)| placement);
             let com = placement.transform_point(&Vector3::from(body.com));
-            let about_com = of_inertia(0.0, &Vector3::zeros(), &Default::default());
-            let mut parameters = about_com;
-            parameters[4..].copy_from_slice(&body.inertia);
-            let (_, _, inertia) = to_inertia(&parameters);
+            let inertia = inertia_matrix(&body.inertia);
             of_inertia(body.mass, &com, &(placement.rotation * inertia * placement.rotation.transpose()))
         });
         let corrected = robot.with_inertial_parameters(&bodies.collect::<Vec<_>>(), &self.armature);
         match &self.payload {
             Some(payload) => {
-                let inertia = nalgebra::Matrix3::from_diagonal_element(payload.moment);
+                let inertia = Matrix3::from_diagonal_element(payload.moment);
                 corrected.with_payload(robot.link(&payload.link)?, payload.mass, payload.com.into(), inertia)
             }
             None => Ok(corrected),
@@ -243,6 +261,16 @@ impl Calibration {
         let delays = [self.velocity_delay, self.torque_delay];
         TorqueModel::new(&self.torque_scale, &self.torque_bias, &self.friction, delays)
     }
+}
+
+/// Rounding, and published inertias that are a little off, make moments this negative (share of the largest).
+const NEGATIVE: f64 = 0.5;
+
+/// From the moments `xx, xy, yy, xz, yz, zz`.
+fn inertia_matrix(moments: &[f64; 6]) -> Matrix3<f64> {
+    let mut parameters = [0.0; 10];
+    parameters[4..].copy_from_slice(moments);
+    to_inertia(&parameters).2
 }
 
 /// A longer delay is another fault (s).

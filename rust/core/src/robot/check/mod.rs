@@ -13,7 +13,7 @@ use super::numbers::LARGEST;
 use crate::error::{Error, Result};
 use crate::spatial::Pose;
 
-pub(super) use inertia::principal_moments;
+pub(crate) use inertia::principal_moments;
 pub(super) use link_tree::check_link_tree;
 pub(super) use mass_matrix::check_mass_matrix;
 

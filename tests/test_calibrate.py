@@ -1,0 +1,196 @@
+"""Motion without contact tells what is wrong with an arm; bad logs and arguments are refused by name."""
+
+from __future__ import annotations
+
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+from functools import cache
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from robots import parameters, robot_named
+
+import contactsense as cs
+
+IIWA = cs.Robot.named("iiwa14")
+TICK = 0.005
+
+
+@cache
+def motion() -> cs.Motion:
+    return cs.exciting_motion(IIWA, 20.0, dt=TICK)
+
+
+def torques(robot: cs.Robot = IIWA) -> np.ndarray:
+    rows = zip(motion().q, motion().v, motion().a, strict=True)
+    return np.array([robot.inverse_dynamics(q, v, a) for q, v, a in rows])
+
+
+def white(size: float) -> np.ndarray:
+    return np.random.default_rng(1).normal(0.0, size, motion().v.shape)
+
+
+def log(tau: np.ndarray, rows: slice = slice(None)) -> cs.Log:
+    return cs.Log(motion().time, motion().q, motion().v, tau)[rows]
+
+
+def corrected(calibration: cs.Calibration) -> cs.Robot:
+    """The robot with the inertias of a calibration; each link of this one has the frame of its joint."""
+    model = IIWA.model.copy()
+    for joint, body in enumerate(calibration.bodies, start=1):
+        model.inertias[joint] = pin.Inertia(body.mass, body.com, body.inertia)
+    model.armature = np.array(calibration.armature)
+    return cs.Robot.from_pinocchio(model, IIWA.geometry_model)
+
+
+def test_what_an_imperfect_arm_has_is_found() -> None:
+    pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install contactsense[sim]")
+    from contactsense import sim
+
+    arm = sim.ImperfectArm.typical(IIWA)
+    run = sim.record_imperfect(IIWA, arm, motion(), seed=4)
+    half = len(run.log) // 2
+    calibration = cs.calibrate(IIWA, run.log[:half])
+
+    def left(robot: cs.Robot, calibration: cs.Calibration) -> np.ndarray:
+        rows = slice(half, None)
+        q, v, a = run.truth.q[rows], run.truth.v[rows], run.truth.a[rows]
+        model = [robot.inverse_dynamics(*row) for row in zip(q, v, a, strict=True)]
+        friction = calibration.friction
+        slow = np.array([width for _, width in friction.reversal])
+        bias = calibration.torque_bias + friction.coulomb * np.tanh(v / slow) + friction.viscous * v
+        return np.sqrt(np.mean((run.log.tau[rows] - model - bias) ** 2, axis=0))
+
+    before = left(IIWA, cs.Calibration.of_description(IIWA))
+    assert (left(corrected(calibration), calibration) < 0.7 * before).sum() >= 5
+    assert calibration.joint_names == IIWA.joint_names
+    calibration.check(IIWA)
+    assert pickle.loads(pickle.dumps(calibration)) == calibration
+
+
+def test_bias_friction_and_rotors() -> None:
+    bias, coulomb = np.linspace(-0.4, 0.4, 7), np.linspace(0.2, 1.0, 7)
+    rotor = np.array([0.3, 0.3, 0.3, 0.2, 0.1, 0.1, 0.0])
+    v, a = motion().v, motion().a
+    tau = torques() + bias + coulomb * np.tanh(v / 0.01) + 0.3 * v + rotor * a
+    calibration = cs.calibrate(IIWA, log(tau + white(0.05)), false_alarms_per_hour=0.5)
+    np.testing.assert_allclose(calibration.torque_bias, bias, atol=0.05)
+    np.testing.assert_allclose(calibration.friction.coulomb, coulomb, atol=0.1)
+    np.testing.assert_allclose(calibration.friction.viscous, 0.3, atol=0.15)
+    # The first rotor and the inertia of the first link turn about one axis: nothing tells them apart.
+    np.testing.assert_allclose(calibration.armature[1:5], rotor[1:5], atol=0.1)
+    assert calibration.false_alarms_per_hour == 0.5
+    assert calibration.payload is None
+    np.testing.assert_allclose(calibration.noise.torque, 0.05, rtol=0.3)
+    assert calibration.residual.max() < 0.1
+    for std in (calibration.torque_bias_std, calibration.friction.coulomb_std, calibration.armature_std):
+        assert (std > 0.0).all()
+
+
+def test_a_payload_is_found() -> None:
+    loaded = IIWA.with_payload("iiwa_link_7", 1.5, [0.02, -0.03, 0.08], 2e-3 * np.eye(3))
+    payload = cs.calibrate(IIWA, log(torques(loaded) + white(0.05)), payload_link="iiwa_link_7").payload
+    assert payload is not None
+    assert payload.link == "iiwa_link_7"
+    assert payload.mass == pytest.approx(1.5, rel=0.05)
+    np.testing.assert_allclose(payload.com, [0.02, -0.03, 0.08], atol=0.015)
+    assert 0.0 < payload.mass_std < 0.2
+    assert payload == pickle.loads(pickle.dumps(payload))
+    assert set(payload.to_dict()) == {"link", "mass", "mass_std", "com", "com_std", "moment"}
+
+
+def test_a_contact_is_left_out() -> None:
+    tau = torques() + white(0.05)
+    touched = (motion().time > 8.0) & (motion().time < 8.5)
+    tau[touched] += [8.0, 12.0, 5.0, 8.0, 3.0, 3.0, 1.0]
+    calibration = cs.calibrate(IIWA, log(tau))
+    assert any(start <= 8.0 and end >= 8.5 for start, end in calibration.contacts)
+    np.testing.assert_allclose(calibration.torque_bias, 0.0, atol=0.05)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"robot": "iiwa14"}, "robot: expected a contactsense.Robot"),
+        ({"robot": cs.Robot.named("atlas")}, "q: must be 400 rows of 37"),
+        ({"log": [1.0, 2.0]}, "log: expected a contactsense.Log, got list"),
+        ({"log": cs.Log([0.0], np.zeros((1, 7)), np.zeros((1, 7)), np.zeros((1, 7)))}, "log: "),
+        ({"log": cs.Log([], np.zeros((0, 7)), np.zeros((0, 7)), np.zeros((0, 7)))}, "log: "),
+        ({"log": cs.Log([0.0, 0.1], *[np.zeros((2, 7))] * 3)}, "log: is too short"),
+        ({"log": cs.Log([0.0, 0.1], np.zeros((2, 6)), *[np.zeros((2, 7))] * 2)}, "q: must be 2 rows of 7"),
+        ({"log": cs.Log([0.0, 0.1], *[np.zeros((2, 7))] * 2, np.zeros((2, 1)))}, "tau: must be 2 rows of 7"),
+        ({"log": cs.Log([0.0], *[np.zeros((1, 7))] * 2, external_torque=np.zeros((1, 7)))}, "log: needs tau"),
+        ({"log": cs.Log(np.arange(3e3) * 0.01, *[np.zeros((3000, 7))] * 3)}, "log: "),
+        ({"false_alarms_per_hour": 0.0}, "false_alarms_per_hour: must be positive"),
+        ({"false_alarms_per_hour": "one"}, "false_alarms_per_hour: expected a number"),
+        ({"payload_link": "gripper"}, "payload_link: there is no link 'gripper'; the links are iiwa_link_0"),
+        ({"payload_link": "iiwa_link_0"}, "payload_link: 'iiwa_link_0' is fixed to the world"),
+        ({"payload_link": 7}, "payload_link: expected a string"),
+    ],
+)
+def test_arguments_that_cannot_be_used(change: dict[str, object], said: str) -> None:
+    short = log(np.zeros_like(motion().v), slice(0, 400))
+    given = {"robot": IIWA, "log": short} | change
+    with pytest.raises(cs.InputError, match=said):
+        cs.calibrate(**given)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", parameters(["xarm7", "kinova", "panda", "ur5"]))
+def test_arms_with_massless_links_sliding_or_endless_joints(name: str) -> None:
+    robot = robot_named(name)
+    phase = np.linspace(0.0, 6.0, robot.nv)
+    seconds = 0.01 * np.arange(1500)[:, None]
+    rate = np.linspace(0.7, 2.9, robot.nv)
+    q = [robot.integrate(robot.neutral(), x) for x in 0.3 * np.sin(rate * seconds + phase)]
+    v = 0.3 * rate * np.cos(rate * seconds + phase)
+    a = -0.3 * rate**2 * np.sin(rate * seconds + phase)
+    tau = [robot.inverse_dynamics(*row) for row in zip(q, v, a, strict=True)]
+    noisy = np.array(tau) + np.random.default_rng(0).normal(0.0, 0.05, v.shape)
+    calibration = cs.calibrate(robot, cs.Log(seconds[:, 0], q, v, noisy))
+    assert calibration.residual.max() < 0.1
+    assert all(np.linalg.eigvalsh(body.inertia)[0] >= -1e-12 for body in calibration.bodies)
+    calibration.check(robot)
+
+
+def test_other_threads_run_while_it_computes() -> None:
+    ticks, stop = [], threading.Event()
+
+    def count() -> None:
+        while not stop.wait(1e-3):
+            ticks.append(time.monotonic())
+
+    other = threading.Thread(target=count)
+    other.start()
+    begin = time.monotonic()
+    cs.calibrate(IIWA, log(torques() + white(0.05)))
+    end = time.monotonic()
+    stop.set()
+    other.join()
+    assert sum(begin < tick < end for tick in ticks) > 3
+
+
+INTERRUPTED = """
+import os, signal, threading
+import numpy as np, contactsense as cs
+signal.signal(signal.SIGINT, signal.default_int_handler)
+robot = cs.Robot.named("iiwa14")
+time = 0.01 * np.arange(60_000)
+angles = np.sin(np.outer(time, np.linspace(0.5, 3.0, 7)))
+log = cs.Log(time, angles, angles, angles)
+threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
+try:
+    cs.calibrate(robot, log)
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGINT") or sys.platform == "win32", reason="POSIX signals")
+def test_ctrl_c_ends_it() -> None:
+    run = subprocess.run([sys.executable, "-c", INTERRUPTED], capture_output=True, text=True, timeout=120)
+    assert run.stdout == "interrupted\n", run.stderr

@@ -1,0 +1,244 @@
+"""A calibration is kept in a file that people can read and edit, and that says what is wrong with it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from robots import parameters, robot_named
+
+import contactsense as cs
+from contactsense.calibration.file_layout import content_keys
+
+IIWA = cs.Robot.named("iiwa14")
+SCALE = "    torque_scale: -1.0"  # of joint 2
+
+
+def full(robot: cs.Robot = IIWA, **changes: object) -> cs.Calibration:
+    """Another number at every place, some of them as awkward as they come."""
+    content = json.loads(cs.Calibration.of_description(robot)._content())
+    random = np.random.default_rng(3)
+    nv = len(content["joints"])
+    for key in ("torque_bias", "torque_bias_std", "torque_scale", "coulomb_std", "viscous_std", "armature"):
+        content[key] = (10.0 ** random.uniform(-9, 3, nv)).tolist()
+    content["torque_scale"][1] = -1.0
+    content["armature_std"], content["residual"] = [1.23e-300] * nv, [1.23456789012345e15] * nv
+    content["friction"]["coulomb"] = random.uniform(0, 1, nv).tolist()
+    content["friction"]["viscous"] = [0.0] * nv
+    content["friction"]["reversal"] = [{"displacement": 0.01}] + [{"velocity": 1e-5}] * (nv - 1)
+    content["payload"] = {
+        "link": "iiwa_link_7",
+        "mass": 1.2,
+        "mass_std": 0.1,
+        "com": [0.0, -1e-7, 0.1],
+        "com_std": [1.0, 0.1, 0.2],
+        "moment": 1e-3,
+    }
+    content["sensor_offsets"] = [["wrist: left", [1.0, 2.0, -3.0, 0.1, 0.2, 1e-20]]]
+    content["contacts"] = [[1.0, 2.5], [1700000000.125, 1700000001.0]]
+    content["notes"] = ["joint 7: its mass\ncannot be told # apart", "Größe \U0001f600 'and' \"so\""]
+    content["noise"]["torque"] = random.uniform(0, 1, nv).tolist()
+    content |= {"inertial_change": 0.3, "velocity_delay": 0.004, "torque_delay": 0.001}
+    return cs.Calibration(json.dumps(content | changes))
+
+
+def close(one: object, other: object) -> bool:
+    """Whether plain values are equal, numbers to 1e-9 of them."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(close(one[key], other[key]) for key in one)
+    if isinstance(one, list | tuple) and isinstance(other, list | tuple):
+        return len(one) == len(other) and all(map(close, one, other))
+    if isinstance(one, float) and isinstance(other, float):
+        return abs(one - other) <= 1e-9 * abs(one)
+    return one == other
+
+
+@pytest.fixture
+def edited(tmp_path):
+    """Reads the file after lines of it were changed."""
+    path = tmp_path / "arm.yaml"
+    full().save(path)
+
+    def edit(*changes: tuple[str, str]) -> cs.Calibration:
+        text = path.read_text(encoding="utf-8")
+        for old, new in changes:
+            assert old in text, text
+            text = text.replace(old, new, 1)
+        path.write_text(text, encoding="utf-8")
+        return cs.Calibration.load(path)
+
+    return edit
+
+
+def test_what_is_saved_is_loaded(tmp_path: Path) -> None:
+    before = full()
+    before.save(tmp_path / "arm.yaml", source="log: a # b")
+    after = cs.Calibration.load(tmp_path / "arm.yaml")
+    assert close(before.to_dict(), after.to_dict())
+    after.save(tmp_path / "again.yaml", source="log: a # b")
+    assert cs.Calibration.load(str(tmp_path / "again.yaml")) == after
+    assert (tmp_path / "again.yaml").read_bytes() == (tmp_path / "arm.yaml").read_bytes()
+    after.check(IIWA)
+    plain = yaml.safe_load((tmp_path / "arm.yaml").read_text(encoding="utf-8"))
+    assert plain["source"] == "log: a # b"
+    assert plain["joints"]["iiwa_joint_2"]["torque_scale"] == -1.0
+
+
+@pytest.mark.parametrize("name", parameters(["iiwa14", "panda", "kinova", "xarm7", "ur5"]))
+def test_descriptions_are_saved_and_loaded(tmp_path: Path, name: str) -> None:
+    robot = robot_named(name)
+    before = cs.Calibration.of_description(robot)
+    before.save(tmp_path / "arm.yaml")
+    after = cs.Calibration.load(tmp_path / "arm.yaml")
+    assert close(before.to_dict(), after.to_dict())
+    after.check(robot)
+
+
+def test_the_file_holds_all_that_the_core_has() -> None:
+    """A new field of the core needs a line in `file_layout`, or a place in writing and reading."""
+    assert set(json.loads(full()._content())) == content_keys()
+
+
+def test_every_number_has_a_unit(tmp_path: Path) -> None:
+    full().save(tmp_path / "arm.yaml")
+    lines = (tmp_path / "arm.yaml").read_text(encoding="utf-8").splitlines()
+    inside = ""
+    for line in lines:
+        if "#" in line and line.split("#")[0].rstrip().endswith(":"):
+            inside = line
+        number = line.split(":")[-1].split("#")[0].strip(" []-")[:1].isdigit()
+        if number and not line.startswith(("format", "date", "contactsense")):
+            assert "# " in line or "# " in inside, line
+
+
+def test_a_file_edited_by_hand(edited) -> None:
+    """Numbers without a point, one number a joint in place of one for all, joints in another order."""
+    joint = "iiwa_joint_2:\n    torque_bias: "
+    shares = ", ".join(f"iiwa_joint_{k}: 0.0{k}" for k in range(7, 0, -1))
+    calibration = edited(
+        (joint, joint + "1e-2  # "),
+        ("velocity_delay: 0.004", "velocity_delay: 0"),
+        ("relative: 0.03", f"relative: {{{shares}}}"),
+    )
+    assert calibration.torque_bias[1] == 0.01
+    assert calibration.velocity_delay == 0.0
+    np.testing.assert_allclose(calibration.noise.relative, 0.01 * np.arange(1, 8))
+    calibration.check(IIWA)
+
+
+def test_the_order_of_joints_and_links_in_the_file_does_not_matter(tmp_path: Path) -> None:
+    full().save(tmp_path / "arm.yaml")
+    before = cs.Calibration.load(tmp_path / "arm.yaml")
+    plain = yaml.safe_load((tmp_path / "arm.yaml").read_text(encoding="utf-8"))
+    for key in ("joints", "links"):
+        plain[key] = dict(reversed(plain[key].items()))
+    (tmp_path / "arm.yaml").write_text(yaml.safe_dump(plain), encoding="utf-8")
+    assert cs.Calibration.load(tmp_path / "arm.yaml") == before
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("format: 1", "format: 2", "format: .*reads format 1, not 2"),
+        ("format: 1\n", "", "format .* is missing"),
+        ("format: 1\n", "format: true\n", "not True"),
+        ("torque_is_external: false", "torque_is_external: maybe", "torque_is_external: .*true or false"),
+        ("velocity_delay: 0.004", "velocity_delay: -0.1", "velocity_delay: must be .*not negative.*-0.1"),
+        ("velocity_delay: 0.004", "velocity_delay: .nan", "velocity_delay: must be a finite"),
+        ("velocity_delay: 0.004", "speed_delay: 0.004", r"velocity_delay .* is missing"),
+        ("notes:", "remarks: 1\nnotes:", "no entry 'remarks'; there are format, "),
+        (SCALE, "    torque_scale: 0", "joints: iiwa_joint_2: torque_scale: .*other than zero"),
+        (SCALE, "    torque_scale: yes", "iiwa_joint_2: torque_scale: .*not True"),
+        (SCALE, "    torque_scale: '1 Nm'", "iiwa_joint_2: torque_scale: .*not '1 Nm'"),
+        (SCALE, "    torque_scale:", "iiwa_joint_2: torque_scale: .*not None"),
+        (SCALE, f"    torque_scale: 1{'0' * 400}", "iiwa_joint_2: torque_scale: .*not 1000"),
+        (SCALE, "    stiction: 1.0", "iiwa_joint_2: torque_scale .* is missing"),
+        (SCALE, SCALE + "\n    stiction: 1.0", "iiwa_joint_2: .*no entry 'stiction'"),
+        (SCALE, "    torque_scale: 1\n    torque_scale: 2", "'torque_scale' stands twice"),
+        ("  iiwa_joint_3:\n", "  iiwa_joint_9:\n", r"joints: iiwa_joint_3 .* is missing"),
+        ("  iiwa_joint_3:\n", "  3:\n", "joints: the name 3 must be a text"),
+        ("    - iiwa_joint_3\n", "", "joints: there is no entry 'iiwa_joint_3'"),
+        ("    - iiwa_joint_3\n", "    - iiwa_joint_2\n", "stands there twice"),
+        ("    - iiwa_joint_3\n", "    - 3\n", r"joints\[2\]: must be a text"),
+        ("{displacement: ", "{way: ", "iiwa_joint_1: reversal: .*velocity.*displacement"),
+        ("{displacement: ", "{velocity: 0.1, displacement: ", "iiwa_joint_1: reversal"),
+        ("{displacement: 0.01}", "0.01", "iiwa_joint_1: reversal: must be a mapping"),
+        ("{displacement: 0.01}", "{displacement: 0}", "iiwa_joint_1: reversal: displacement: .*positive"),
+        ("relative: 0.03", "relative: {iiwa_joint_1: 0.1}", "noise: relative: iiwa_joint_2 .* is missing"),
+        ("relative: 0.03", "relative: [0.1]", "noise: relative: must be a finite number"),
+        ("joint: iiwa_joint_4", "joint: iiwa_joint_5", "links: iiwa_link_5: joint must be another one"),
+        ("joint: iiwa_joint_4", "joint: elbow", "links: iiwa_link_4: joint must be .*not 'elbow'"),
+        ("    mass: ", "    mass: -", "links: iiwa_link_1: mass: "),
+        ("    com: [", "    com: [1, ", "links: iiwa_link_1: com: must be a list of 3 numbers"),
+        ("    inertia: [", "    inertia: [-", "links: iiwa_link_1: inertia: its principal moments"),
+        ("  link: iiwa_link_7", "  link: 7", "payload: link: must be a text"),
+        ("  mass_std: 0.1", "  mass_std: none", "payload: mass_std: "),
+        ("payload:", "payload: 3\nload:", "payload: must be a mapping"),
+        ("  - [1.0, 2.5]", "  - [1.0]", r"contacts\[0\]: must be a list of 2"),
+        ('"wrist: left": [', '"wrist: left": [0, ', "sensor_offsets: wrist: left: .*6 numbers"),
+        ("joints:", "joints: [", "is no YAML"),
+        ("format:", "- format:", "is no YAML|must be a mapping"),
+        ("format:", "x: !!python/object/apply:os.getcwd []\nformat:", "is no YAML"),
+        ("format:", f"x: {'[' * 5000}{']' * 5000}\nformat:", "cannot be read"),
+        ("format:", "x: 2020-19-39\nformat:", "cannot be read"),
+    ],
+)  # fmt: skip
+def test_errors_name_the_file_and_the_entry(edited, old: str, new: str, said: str) -> None:
+    with pytest.raises(cs.InputError, match=rf"(?s)arm\.yaml: .*{said}"):
+        edited((old, new))
+
+
+def test_a_link_that_is_missing_is_named_by_its_joint(tmp_path: Path) -> None:
+    path = tmp_path / "arm.yaml"
+    full().save(path)
+    plain = yaml.safe_load(path.read_text(encoding="utf-8"))
+    del plain["links"]["iiwa_link_4"]
+    path.write_text(yaml.safe_dump(plain), encoding="utf-8")
+    with pytest.raises(
+        cs.InputError, match=r"arm\.yaml: links: the link that joint 'iiwa_joint_4' moves is missing"
+    ):
+        cs.Calibration.load(path)
+
+
+@pytest.mark.parametrize("text", [b"", b"null", b"3", b"\xff\xfe\x00", b"[]", b"\x00", b"a: &a [*a]"])
+def test_what_is_no_calibration(tmp_path: Path, text: bytes) -> None:
+    (tmp_path / "arm.yaml").write_bytes(text)
+    with pytest.raises(cs.InputError, match=r"arm\.yaml"):
+        cs.Calibration.load(tmp_path / "arm.yaml")
+
+
+def test_aliases_that_multiply_cost_no_time(tmp_path: Path) -> None:
+    lines = ["a0: &a0 [x]", *(f"a{k}: &a{k} [{', '.join([f'*a{k - 1}'] * 9)}]" for k in range(1, 30))]
+    (tmp_path / "arm.yaml").write_text("\n".join(lines), encoding="utf-8")
+    with pytest.raises(cs.InputError, match="format"):
+        cs.Calibration.load(tmp_path / "arm.yaml")
+
+
+def test_files_that_cannot_be_opened(tmp_path: Path) -> None:
+    with pytest.raises(cs.InputError, match=r"path: cannot read .*nowhere\.yaml"):
+        cs.Calibration.load(tmp_path / "nowhere.yaml")
+    with pytest.raises(cs.InputError, match="path: cannot write"):
+        full().save(tmp_path)
+    for path in (3, None, b"arm.yaml"):
+        with pytest.raises(cs.InputError, match="path: expected a path"):
+            cs.Calibration.load(path)  # type: ignore[arg-type]
+        with pytest.raises(cs.InputError, match="path: expected a path"):
+            full().save(path)  # type: ignore[arg-type]
+    with pytest.raises(cs.InputError, match="path: cannot read"):
+        cs.Calibration.load("arm\0.yaml")
+    with pytest.raises(cs.InputError, match="source"):
+        full().save(tmp_path / "arm.yaml", source=3)  # type: ignore[arg-type]
+
+
+def test_another_robot_is_refused(tmp_path: Path) -> None:
+    full().save(tmp_path / "arm.yaml")
+    calibration = cs.Calibration.load(tmp_path / "arm.yaml")
+    with pytest.raises(cs.InputError, match="calibration: is of 'iiwa14'"):
+        calibration.check(robot_named("panda"))
+    with pytest.raises(cs.InputError, match="calibration: is of another description"):
+        calibration.check(IIWA.with_payload("iiwa_link_7", 1.0, [0.0, 0.0, 0.1]))
+    with pytest.raises(cs.InputError, match="robot"):
+        calibration.check("iiwa14")  # type: ignore[arg-type]
