@@ -8,6 +8,7 @@
 mod clearance;
 mod cover;
 mod draw;
+mod gap;
 mod information;
 mod limits;
 mod motion;
