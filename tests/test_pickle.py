@@ -80,6 +80,7 @@ def objects():
         "ContactEstimate without contact": quiet,
         "Mode": estimate.modes[0],
         "Particles": particle_filter.particles,
+        "Motion": cs.exciting_motion(robot, 1.0, dt=0.05),
     }
 
 
@@ -96,6 +97,7 @@ NAMES = [
     "ContactEstimate",
     "Mode",
     "Particles",
+    "Motion",
 ]
 
 
@@ -131,7 +133,7 @@ def test_another_version_is_refused(objects):
 
 
 @pytest.mark.parametrize(
-    "name", ["Isolation", "Contact", "Candidate", "ContactReport", "ContactEstimate", "Mode"]
+    "name", ["Isolation", "Contact", "Candidate", "ContactReport", "ContactEstimate", "Mode", "Motion"]
 )
 def test_to_dict_holds_all_attributes_as_plain_values(objects, name):
     plain = objects[name].to_dict()

@@ -142,3 +142,53 @@ impl Gap<'_> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::cover::{FINE, USUAL};
+    use super::*;
+    use crate::surface::{Geometry, Part};
+
+    fn cube(half: f64, faces: usize) -> Surface {
+        let geometry = Geometry::Box { half_extents: [half; 3] };
+        let (closed, _) = Surface::new(vec![Part { geometry, pose: Pose::identity() }]).expect("a box");
+        let (vertices, triangles) = (closed.vertices().to_vec(), closed.triangles()[..faces].to_vec());
+        let geometry = Geometry::Mesh { vertices, triangles };
+        Surface::new(vec![Part { geometry, pose: Pose::identity() }]).expect("a mesh").0
+    }
+
+    fn at(x: f64) -> Pose {
+        Pose { translation: Vector3::new(x, 0.0, 0.0), ..Pose::identity() }
+    }
+
+    #[test]
+    fn what_is_left_depends_on_what_is_kept() {
+        let surface = cube(0.05, 12);
+        let (usual, fine) = (Cover::new(&surface, USUAL), Cover::new(&surface, FINE));
+        let left = |gap: f64, kept| {
+            let poses = [&at(0.1 + gap), &Pose::identity()];
+            Gap { cover: &usual, surfaces: [&surface; 2], poses }.left(kept, Some(&fine), 0.0)
+        };
+        assert!(left(0.03, Kept::Clear) >= 0.0 && left(0.012, Kept::Clear) < 0.0);
+        assert!(left(0.012, Kept::Tight) >= 0.0 && left(0.001, Kept::Tight) < 0.0);
+        assert!(left(0.001, Kept::Apart) >= 0.0 && left(-0.001, Kept::Apart) < 0.0);
+    }
+
+    #[test]
+    fn only_what_is_inside_as_a_whole_is_inside() {
+        let small = cube(0.02, 12);
+        let cover = Cover::new(&small, USUAL);
+        // Closed, and without one of its faces.
+        for faces in [12, 10] {
+            let large = cube(0.2, faces);
+            let inside = |x: f64| {
+                Gap { cover: &cover, surfaces: [&small, &large], poses: [&at(x), &Pose::identity()] }
+                    .is_inside()
+            };
+            assert!(inside(0.0) && inside(0.1));
+            for x in [0.2, 0.25, 0.4, -0.25, -0.4] {
+                assert!(!inside(x), "{faces} {x}");
+            }
+        }
+    }
+}
