@@ -118,6 +118,7 @@ SLOW = """
         "sample": lambda: surface.sample(30_000_000),
         "closest_points": lambda: surface.closest_points(rows),
         "cast_rays": lambda: surface.cast_rays(rows, rows),
+        "exciting_motion": lambda: cs.exciting_motion(robot, 20.0),
     }}
     main = threading.main_thread().ident
     send = lambda: threading.Timer(0.05, signal.pthread_kill, (main, signal.SIGUSR1)).start()
@@ -151,7 +152,7 @@ def run(script, **options):
 
 
 @pytest.mark.skipif(not hasattr(signal, "pthread_kill"), reason="signals of POSIX")
-@pytest.mark.parametrize("name", ["sample", "closest_points", "cast_rays", "update"])
+@pytest.mark.parametrize("name", ["sample", "closest_points", "cast_rays", "update", "exciting_motion"])
 def test_a_long_call_is_interrupted_between_slices(name):
     """A handler of signals runs in the midst of the call; without slices it would run at its end."""
     ended = run(SLOW.format(name=name))

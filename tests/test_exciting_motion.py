@@ -47,7 +47,8 @@ def test_velocities_and_accelerations_are_derivatives(planned):
     for k in range(1, len(motion) - 1, 97):
         v = pin.difference(model, motion.q[k - 1], motion.q[k + 1]) / (2 * h)
         np.testing.assert_allclose(v, motion.v[k], atol=1e-3)
-        np.testing.assert_allclose((motion.v[k + 1] - motion.v[k - 1]) / (2 * h), motion.a[k], atol=1e-2)
+        # The slope of the acceleration, up to some 100 rad/s^3, jumps between moves.
+        np.testing.assert_allclose((motion.v[k + 1] - motion.v[k - 1]) / (2 * h), motion.a[k], atol=0.05)
 
 
 def test_efforts_are_within_limits(planned):
@@ -58,23 +59,35 @@ def test_efforts_are_within_limits(planned):
         assert (np.abs(tau) <= robot.effort_limits).all()
 
 
-def test_no_links_collide(planned):
-    robot, motion = planned
+def collision_pairs(robot):
+    """Of all links but neighbours and those that coal finds in collision in nearly all random poses."""
     model, geometry = robot.model, robot.geometry_model.copy()
     geometry.removeAllCollisionPairs()
     parents = list(model.parents)
-    unchecked = {frozenset(pair) for pair in motion.unchecked}
     for one, other in itertools.combinations(range(len(geometry.geometryObjects)), 2):
-        objects = [geometry.geometryObjects[k] for k in (one, other)]
-        joints = [item.parentJoint for item in objects]
-        links = frozenset(model.frames[item.parentFrame].name for item in objects)
-        near = joints[0] == joints[1] or parents[joints[0]] == joints[1] or parents[joints[1]] == joints[0]
-        if not near and links not in unchecked:
+        joints = [geometry.geometryObjects[k].parentJoint for k in (one, other)]
+        if joints[0] != joints[1] and parents[joints[0]] != joints[1] and parents[joints[1]] != joints[0]:
             geometry.addCollisionPair(pin.CollisionPair(one, other))
+    data, shapes, collide = model.createData(), geometry.createData(), 0
+    for seed in range(100):
+        pin.computeCollisions(model, data, geometry, shapes, robot.random_configuration(seed), False)
+        collide += np.array([result.isCollision() for result in shapes.collisionResults], int)
+    by_design = [pair for pair, count in zip(geometry.collisionPairs, collide, strict=True) if count > 90]
+    for pair in by_design:
+        geometry.removeCollisionPair(pair)
+    return geometry
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize("name", ARMS)
+def test_no_links_collide(name, seed):
+    robot = robot_named(name)
+    motion = cs.exciting_motion(robot, 20.0, seed=seed)
+    geometry = collision_pairs(robot)
     assert len(geometry.collisionPairs) > 8
-    data, shapes = model.createData(), geometry.createData()
+    data, shapes = robot.model.createData(), geometry.createData()
     for q in motion.q[::20]:
-        assert not pin.computeCollisions(model, data, geometry, shapes, q, True)
+        assert not pin.computeCollisions(robot.model, data, geometry, shapes, q, True)
 
 
 def regressor(model, q, v, a):
@@ -110,31 +123,46 @@ def test_it_excites_all_that_random_states_excite(planned):
     assert np.sum(values > 1e-6 * values[0]) == base.shape[1]
 
 
-def test_it_tells_more_than_random_sines():
-    """Of the packaged arm, whose fastest sines within the same limits are as long; those may even collide."""
-    robot = cs.Robot.named("iiwa14")
+@pytest.mark.parametrize("name", ["iiwa14", "ur5", "xarm7"])
+def test_it_tells_more_than_random_sines(name):
+    """The fastest ones within the same limits, as long, which may even collide; by the logarithm of singular
+    values."""
+    robot = robot_named(name)
     scale = np.empty(14 * robot.nv)
     base = base_parameters(robot, scale)
+    limits = np.clip(robot.position_limits, -2 * np.pi, 2 * np.pi)
 
-    def condition(q, v, a):
-        values = np.linalg.svd(regressor(robot.model, q, v, a) / scale @ base, compute_uv=False)
-        return values[0] / values[-1]
+    def told(q, v, a):
+        rows = regressor(robot.model, q, v, a) / scale @ base
+        return np.mean(np.log(np.linalg.svd(rows / np.sqrt(len(rows)), compute_uv=False)))
 
     def sines(seed):
         rng, time = np.random.default_rng(seed), np.arange(0.0, 20.0, 0.05)[:, None, None]
         frequency = 2 * np.pi * rng.uniform(0.05, 0.3, (3, robot.nv))
         amplitude = rng.uniform(0.0, 1.0, (3, robot.nv))
         amplitude *= speed_limits(robot) / (amplitude * frequency).sum(axis=0)
-        amplitude *= np.minimum(1.0, 0.9 * robot.position_limits[:, 1] / amplitude.sum(axis=0))
+        amplitude *= np.minimum(1.0, 0.9 * np.ptp(limits, axis=1) / 2 / amplitude.sum(axis=0))
         angle = frequency * time + rng.uniform(0.0, 2 * np.pi, (3, robot.nv))
         q, v = amplitude * np.sin(angle), amplitude * frequency * np.cos(angle)
-        return condition(q.sum(axis=1), v.sum(axis=1), -(frequency**2 * q).sum(axis=1))
+        return told(q.sum(axis=1) + limits.mean(axis=1), v.sum(axis=1), -(frequency**2 * q).sum(axis=1))
 
     def planned_one(seed):
         motion = cs.exciting_motion(robot, 20.0, seed=seed)
-        return condition(motion.q[::50], motion.v[::50], motion.a[::50])
+        return told(motion.q[::50], motion.v[::50], motion.a[::50])
 
-    assert np.median([planned_one(seed) for seed in range(3)]) < np.median([sines(seed) for seed in range(5)])
+    # By half on average, in each direction.
+    assert min(planned_one(seed) for seed in range(3)) > max(sines(seed) for seed in range(3)) + np.log(1.5)
+
+
+def test_it_reaches_far(planned):
+    """In 20 s, most joints see much of their range, or as much as two seconds at their largest speed."""
+    robot, motion = planned
+    moved = [kind not in ("continuous", "prismatic") for kind in robot.joint_kinds]
+    if robot.nq != robot.nv:
+        pytest.skip("positions of continuous joints are cosine and sine")
+    seen = np.ptp(motion.q, axis=0)
+    wanted = np.minimum(0.5 * np.ptp(robot.position_limits, axis=1), 2.0 * speed_limits(robot))
+    assert np.mean((seen >= wanted)[moved]) > 0.5
 
 
 def test_it_has_slow_and_fast_parts_of_both_signs(planned):

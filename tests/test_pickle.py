@@ -84,6 +84,7 @@ def objects():
         "ContactEstimate without contact": quiet,
         "Mode": estimate.modes[0],
         "Particles": particle_filter.particles,
+        "Motion": cs.exciting_motion(robot, 1.0, dt=0.05),
     }
 
 
@@ -105,6 +106,7 @@ NAMES = [
     "ContactEstimate",
     "Mode",
     "Particles",
+    "Motion",
 ]
 
 
@@ -152,6 +154,7 @@ def test_another_version_is_refused(objects):
         "Calibration",
         "JointFriction",
         "BodyInertia",
+        "Motion",
     ],
 )
 def test_to_dict_holds_all_attributes_as_plain_values(objects, name):

@@ -900,7 +900,7 @@ class Motion:
         """Length [s]."""
     @property
     def unchecked(self) -> tuple[tuple[str, str], ...]:
-        """Pairs of links whose distance was not checked: neighbours, and those that touch in all poses."""
+        """Pairs of links whose distance was not checked: neighbours, and those that cross in nearly all poses."""
 
 @final
 class NoiseModel:
@@ -1711,13 +1711,13 @@ def exciting_motion(
 ) -> Motion:
     """A contact-free motion that calibration learns from: rest to rest, within limits, clear of the robot itself.
 
-    It is a chain of moves between poses at rest all over the joints' ranges: far and fast ones, ones with sines added,
-    and slow ones. Of several random moves, each time the one is taken that tells most per second about inertial parameters,
+    It is a chain of moves from rest to rest, in which each joint goes far and fast, with sines added, slowly, or not at all.
+    Of several random moves, each time the one is taken and improved that tells most per second about inertial parameters,
     bias, Coulomb and viscous friction and rotor inertia.
 
-    Links with a surface stay at least 1 cm away from each other and from a plane under the base, except neighbours and
-    those that touch in nearly all poses (`Motion.unchecked`). Nothing else around the robot is known: look at the motion before
-    running it, and run it slowly first.
+    Links with a surface stay 1 cm away from each other and from a plane under the base, or 2 mm from links that are
+    nearer by design; neighbours and links that cross in nearly all poses are not checked (`Motion.unchecked`).
+    Nothing else around the robot is known: look at the motion before running it, and run it slowly first.
 
     Args:
         robot: with a fixed base.

@@ -1,13 +1,15 @@
 //! Contact-free motion from which calibration learns most (algorithm D2 needs it): rest to rest, within limits, clear of
 //! itself.
 //!
-//! A motion is a chain of moves between poses at rest. For each move, several random ones are drawn; the one with the
-//! most information per second about bias, friction, rotor inertia and inertial parameters that is clear of collisions
-//! is taken (greedy D-optimal design). Fast and slow moves take turns, so that friction near standstill is seen as well.
+//! A motion is a chain of moves between poses at rest. For each move, several random ones are drawn, and the one with the
+//! most information per second about bias, friction, rotor inertia and inertial parameters is improved joint by joint;
+//! the best one that is clear of collisions is taken (greedy D-optimal design). Each joint moves fast, slowly or with sines
+//! by itself, so that friction near standstill is seen as well.
 
 mod clearance;
 mod cover;
 mod draw;
+mod gap;
 mod information;
 mod limits;
 mod motion;

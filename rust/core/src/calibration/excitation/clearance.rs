@@ -2,38 +2,42 @@
 
 use nalgebra::Vector3;
 
-use super::cover::Cover;
+use super::cover::{Cover, FINE, USUAL};
+use super::gap::{Gap, Kept};
 use super::limits::Limits;
 use super::motion::{configuration, Move};
 use crate::math::random::Stream;
 use crate::robot::{JointKind, Kinematics, LinkIndex, Robot, WORLD};
 use crate::spatial::Pose;
-use crate::surface::{RayHit, Surface};
+use crate::surface::Surface;
 
-/// Least distance of a link from others and from the ground (m).
-const CLEARANCE: f64 = 0.01;
 /// Larger distances need not be known (m).
 const FAR: f64 = 0.2;
-/// Beyond so much more than is needed, a lower bound of a distance will do (m).
-const ROUGH: f64 = 0.03;
 /// Instants of a move that are looked at first.
 const COARSE: u32 = 12;
-/// Steps along a motion are at least so long (m), so that their number is bounded.
-const SHORTEST_STEP: f64 = 0.005;
 /// Random poses that show which links always touch.
 const PROBES: u64 = 40;
-/// A pair that is too near in more of the poses touches by design.
+/// What is too near in more of the poses is so by design.
 const ALWAYS: f64 = 0.9;
-/// Crossings of a line with a surface that are looked at.
-const HITS: usize = 64;
 
 /// What must be far from what.
 #[derive(Debug, Clone, Copy)]
 enum Between {
     /// Samples of a link and the surface of another one.
-    Links { sampled: usize, other: usize },
+    Links { sampled: usize, other: usize, kept: Kept },
     /// Samples of a link and the ground.
     Ground { sampled: usize },
+}
+
+impl Between {
+    /// Steps along a motion are at least so long (m), so that their number is bounded.
+    fn shortest_step(self) -> f64 {
+        let kept = match self {
+            Between::Links { kept, .. } => kept,
+            Between::Ground { .. } => Kept::Clear,
+        };
+        0.5 * kept.margin()
+    }
 }
 
 /// A distance to be kept.
@@ -49,6 +53,8 @@ struct Check {
 pub(super) struct Clearance {
     links: Vec<LinkIndex>,
     covers: Vec<Cover>,
+    /// For links that are near others by design.
+    fine: Vec<Option<Cover>>,
     checks: Vec<Check>,
     /// Pairs that touch by design.
     touching: Vec<(usize, usize)>,
@@ -64,7 +70,8 @@ impl Clearance {
         let links = robot.touchable_links().to_vec();
         let (up, ground) = ground(robot, &links).unwrap_or((Vector3::z(), f64::NEG_INFINITY));
         let mut clearance = Clearance {
-            covers: links.iter().map(|link| Cover::new(surface(robot, *link))).collect(),
+            covers: links.iter().map(|link| Cover::new(surface(robot, *link), USUAL)).collect(),
+            fine: vec![None; links.len()],
             poses: vec![Pose::identity(); links.len()],
             checks: checks(robot, limits, &links, ground.is_finite()),
             touching: vec![],
@@ -74,7 +81,7 @@ impl Clearance {
             q: vec![],
             links,
         };
-        clearance.leave_out_what_touches(robot, limits, stream);
+        clearance.adapt_to_design(robot, limits, stream);
         clearance
     }
 
@@ -124,7 +131,7 @@ impl Clearance {
             if distance < 0.0 {
                 return false;
             }
-            time += distance.max(SHORTEST_STEP) / speed;
+            time += distance.max(between.shortest_step()) / speed;
         }
         true
     }
@@ -142,55 +149,27 @@ impl Clearance {
     }
 
     fn violates(&self, robot: &Robot, between: Between) -> bool {
-        let inside = |sampled, other| self.is_inside(robot, sampled, other);
         self.distance(robot, between, 0.0) < 0.0
-            || matches!(between, Between::Links { sampled, other } if inside(sampled, other) || inside(other, sampled))
+            || matches!(between, Between::Links { sampled, other, .. } if
+                self.gap(robot, [sampled, other]).is_inside() || self.gap(robot, [other, sampled]).is_inside())
     }
 
     /// What is left of the clearance (m), or less than that where it is more than `enough`.
     fn distance(&self, robot: &Robot, between: Between, enough: f64) -> f64 {
         match between {
-            Between::Links { sampled, other } => self.distance_of_links(robot, [sampled, other], enough),
+            Between::Links { sampled, other, kept } => {
+                self.gap(robot, [sampled, other]).left(kept, self.fine[sampled].as_ref(), enough)
+            }
             Between::Ground { sampled } => self.height(sampled),
         }
     }
 
-    fn distance_of_links(&self, robot: &Robot, [sampled, other]: [usize; 2], enough: f64) -> f64 {
-        let cover = &self.covers[sampled];
-        let needed = CLEARANCE + cover.hole;
-        let [one, beyond] = [sampled, other].map(|link| surface(robot, self.links[link]));
-        // Samples in the frame of the other link.
-        let place = |point: &Vector3<f64>| {
-            self.poses[other].inverse_transform_point(&self.poses[sampled].transform_point(point))
-        };
-        let [(a, r), (b, s)] = [one, beyond].map(Surface::bounding_sphere);
-        let apart = (place(&a) - b).norm() - r - s;
-        let mut least = enough + needed;
-        if apart > least {
-            return apart - needed;
+    fn gap<'a>(&'a self, robot: &'a Robot, [sampled, other]: [usize; 2]) -> Gap<'a> {
+        Gap {
+            cover: &self.covers[sampled],
+            surfaces: [sampled, other].map(|link| surface(robot, self.links[link])),
+            poses: [&self.poses[sampled], &self.poses[other]],
         }
-        let mut triangle = None;
-        for group in &cover.groups {
-            let center = place(&group.center);
-            if (center - b).norm() - s - group.radius > least {
-                continue;
-            }
-            let (distance, near) = beyond.distance_within(&center, least + group.radius, triangle);
-            if distance - group.radius >= least.min(needed + ROUGH) {
-                least = least.min(distance - group.radius);
-                continue;
-            }
-            triangle = near;
-            for point in &group.points {
-                let (distance, near) = beyond.distance_within(&place(point), least, triangle);
-                least = distance;
-                triangle = near.or(triangle);
-                if least < needed {
-                    return least - needed;
-                }
-            }
-        }
-        least - needed
     }
 
     fn height(&self, link: usize) -> f64 {
@@ -202,38 +181,49 @@ impl Clearance {
                 least = group.points.iter().map(above).fold(least, f64::min);
             }
         }
-        least - CLEARANCE
+        least - Kept::Clear.margin()
     }
 
-    /// Whether a sample of one link lies inside the other one.
-    fn is_inside(&self, robot: &Robot, sampled: usize, other: usize) -> bool {
-        let Some(group) = self.covers[sampled].groups.first() else { return false };
-        let world = self.poses[sampled].transform_point(&group.center);
-        let point = self.poses[other].inverse_transform_point(&world);
-        let mut hits: Vec<RayHit> = Vec::with_capacity(HITS);
-        surface(robot, self.links[other]).cast_line_into(&point, &Vector3::z(), 0.0, &mut hits);
-        hits.first().is_some_and(|hit| !hit.entering)
+    /// Links that are near each other in almost all poses are so by design, and keep a smaller distance; they are left out only
+    /// where they cross each other in almost all poses.
+    fn adapt_to_design(&mut self, robot: &Robot, limits: &Limits, stream: Stream) {
+        let mut near = std::mem::take(&mut self.checks);
+        for kept in [Kept::Clear, Kept::Tight, Kept::Apart] {
+            for check in &mut near {
+                if let Between::Links { sampled, kept: own, .. } = &mut check.between {
+                    *own = kept;
+                    if kept == Kept::Tight {
+                        let surface = surface(robot, self.links[*sampled]);
+                        self.fine[*sampled].get_or_insert_with(|| Cover::new(surface, FINE));
+                    }
+                }
+            }
+            let mut counts = self.violations(robot, limits, &near, stream).into_iter();
+            near.retain(|check| {
+                let kept = counts.next().is_some_and(|count| count as f64 <= ALWAYS * PROBES as f64);
+                if kept {
+                    self.checks.push(check.clone());
+                }
+                !kept && matches!(check.between, Between::Links { .. })
+            });
+        }
+        for check in near {
+            if let Between::Links { sampled, other, .. } = check.between {
+                self.touching.push((sampled.min(other), sampled.max(other)));
+            }
+        }
     }
 
-    /// What is too near in almost all poses is so by design.
-    fn leave_out_what_touches(&mut self, robot: &Robot, limits: &Limits, stream: Stream) {
-        let mut near = vec![0; self.checks.len()];
+    /// In how many random poses distances are too small.
+    fn violations(&mut self, robot: &Robot, limits: &Limits, checks: &[Check], stream: Stream) -> Vec<usize> {
+        let mut counts = vec![0; checks.len()];
         for probe in 0..PROBES {
             self.set(robot, limits.random(&stream.fork(probe)).into_iter());
-            for (check, near) in self.checks.iter().zip(&mut near) {
-                *near += u64::from(self.violates(robot, check.between));
+            for (check, count) in checks.iter().zip(&mut counts) {
+                *count += usize::from(self.violates(robot, check.between));
             }
         }
-        let checks = std::mem::take(&mut self.checks);
-        for (check, near) in checks.into_iter().zip(near) {
-            match check.between {
-                _ if near as f64 <= ALWAYS * PROBES as f64 => self.checks.push(check),
-                Between::Links { sampled, other } => {
-                    self.touching.push((sampled.min(other), sampled.max(other)))
-                }
-                Between::Ground { .. } => {}
-            }
-        }
+        counts
     }
 }
 
@@ -242,12 +232,10 @@ fn surface(robot: &Robot, link: LinkIndex) -> &Surface {
     robot[link].surface.as_deref().unwrap_or_else(|| unreachable!("a link without surface"))
 }
 
-/// Whether one joint, or none, is between two links.
+/// Whether one joint is between two links.
 fn are_neighbours(robot: &Robot, one: LinkIndex, other: LinkIndex) -> bool {
     let (one, other) = (robot[one].body, robot[other].body);
-    one != other
-        && (robot.parent_body(one) == other && one != WORLD
-            || robot.parent_body(other) == one && other != WORLD)
+    one != WORLD && robot.parent_body(one) == other || other != WORLD && robot.parent_body(other) == one
 }
 
 /// All distances that joints change, but between neighbours; the smaller link is sampled.
@@ -269,7 +257,7 @@ fn checks(robot: &Robot, limits: &Limits, links: &[LinkIndex], ground: bool) -> 
             let levers =
                 a.iter().filter(|lever| alone(lever, b)).chain(b.iter().filter(|lever| alone(lever, a)));
             checks.push(Check {
-                between: Between::Links { sampled, other },
+                between: Between::Links { sampled, other, kept: Kept::Clear },
                 levers: levers.copied().collect(),
             });
         }

@@ -6,10 +6,21 @@ use nalgebra::Vector3;
 
 use crate::surface::Surface;
 
-/// Largest hole between samples that is aimed at (m): well below the clearance.
-const HOLE: f64 = 0.01;
-/// Samples of a surface, at least and at most.
-const SAMPLES: [usize; 2] = [200, 5000];
+/// How densely a surface is sampled.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Density {
+    /// Largest hole between samples that is aimed at (m).
+    pub hole: f64,
+    /// Most samples.
+    pub most: usize,
+}
+
+/// Holes as large as the usual clearance.
+pub(super) const USUAL: Density = Density { hole: 0.01, most: 5000 };
+/// Of links that are near others by design.
+pub(super) const FINE: Density = Density { hole: 0.003, most: 40_000 };
+/// Least number of samples of a surface.
+const FEWEST: usize = 200;
 /// Samples of a group, on average.
 const GROUP: usize = 40;
 
@@ -30,13 +41,13 @@ pub(super) struct Cover {
 }
 
 impl Cover {
-    pub fn new(surface: &Surface) -> Self {
+    pub fn new(surface: &Surface, wanted: Density) -> Self {
         let area = surface.exposed_area();
         // The largest empty circle among `n` random points of an area `A` has about the area `A ln n / n`.
         let hole = |n: usize| (area * (n as f64).ln() / (PI * n as f64)).sqrt();
-        let mut count = SAMPLES[0];
-        while count < SAMPLES[1] && hole(count) > HOLE {
-            count = (count + count / 4).min(SAMPLES[1]);
+        let mut count = FEWEST;
+        while count < wanted.most && hole(count) > wanted.hole {
+            count = (count + count / 4).min(wanted.most);
         }
         let points: Vec<Vector3<f64>> =
             surface.sample(count, 0).into_iter().map(|sample| sample.point).collect();
@@ -80,8 +91,8 @@ mod tests {
     fn every_point_of_the_surface_is_near_a_sample_of_a_group() {
         let robot = Robot::example_arm();
         let surface = robot.links()[2].surface.as_deref().expect("it has one");
-        let cover = Cover::new(surface);
-        assert!(cover.hole < 1.1 * HOLE);
+        let cover = Cover::new(surface, USUAL);
+        assert!(cover.hole < 1.1 * USUAL.hole);
         for group in &cover.groups {
             assert!(group.points.iter().all(|point| (point - group.center).norm() <= group.radius + 1e-12));
         }

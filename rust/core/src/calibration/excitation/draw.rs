@@ -6,7 +6,7 @@ use super::limits::Limits;
 use super::motion::{Move, Wave, WAVES, WAY_PEAKS, WINDOW_PEAKS};
 use crate::math::random::Stream;
 
-/// Shortest and longest time of a move (s): short enough that a minute has many.
+/// Shortest and longest time of a move (s): short enough that half a minute has many.
 const DURATION: [f64; 2] = [1.0, 5.0];
 /// Frequencies of sines (Hz): below what the low-passes of calibration take away.
 const FREQUENCY: [f64; 2] = [0.2, 1.2];
@@ -14,12 +14,9 @@ const FREQUENCY: [f64; 2] = [0.2, 1.2];
 const SLOW: [f64; 2] = [0.02, 0.15];
 /// Least share of the room for sines that is used.
 const LEAST_WAVES: f64 = 0.8;
-/// Share of joints that stand still in a fast move, so that others are seen alone.
-const STILL: f64 = 0.15;
-
-/// What moves are for; they take turns.
+/// What a joint does in a move; each joint does something of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Purpose {
+enum Purpose {
     /// Far and fast: weights, inertias, viscous friction.
     Far,
     /// On the way, with sines: inertias.
@@ -28,20 +25,28 @@ pub(super) enum Purpose {
     Shaking,
     /// Slow: bias and Coulomb friction.
     Slow,
+    /// Nothing, so that others are seen alone.
+    Still,
 }
 
-/// Their turns.
-pub(super) const TURNS: [Purpose; 4] = [Purpose::Far, Purpose::Waving, Purpose::Shaking, Purpose::Slow];
+/// How often each purpose is drawn.
+const SHARES: [(Purpose, f64); 5] = [
+    (Purpose::Far, 0.5),
+    (Purpose::Waving, 0.2),
+    (Purpose::Shaking, 0.1),
+    (Purpose::Slow, 0.1),
+    (Purpose::Still, 0.1),
+];
 
 impl Purpose {
-    /// Shares of the limits of velocity and acceleration: of the way, of the sines.
-    fn shares(self) -> [f64; 2] {
-        match self {
-            Purpose::Far => [1.0, 0.0],
-            Purpose::Waving => [0.5, 0.5],
-            Purpose::Shaking => [0.2, 0.8],
-            Purpose::Slow => [SLOW[1], 0.0],
-        }
+    /// The purpose of a uniform random number.
+    fn of(number: f64) -> Self {
+        let mut sum = 0.0;
+        let found = SHARES.iter().find(|(_, share)| {
+            sum += share;
+            number < sum
+        });
+        found.map_or(Purpose::Still, |(purpose, _)| *purpose)
     }
 }
 
@@ -58,46 +63,49 @@ impl Draw {
     }
 }
 
-/// A move from a place within the ranges.
-pub(super) fn draw(limits: &Limits, purpose: Purpose, stream: Stream, from: &[f64]) -> Move {
+/// A move from a place within the ranges, no longer than `left`; it leaves no time that is too short for another one.
+pub(super) fn draw(limits: &Limits, stream: Stream, from: &[f64], left: f64) -> Move {
     let mut random = Draw { stream, counter: 0 };
-    let [way, waving] = purpose.shares();
-    let mut duration = random.between([0.5 * DURATION[1], DURATION[1]]);
-    let travel: Vec<f64> =
-        (0..from.len()).map(|joint| random.travel(limits, purpose, duration, from[joint], joint)).collect();
-    if purpose == Purpose::Far || purpose == Purpose::Waving {
-        duration = shortest(limits, way, &travel).max(DURATION[0]);
+    let [shortest, longest] = DURATION;
+    let mut duration = shortest * (random.between([0.0, 1.0]) * (longest / shortest).ln()).exp();
+    if left - duration < shortest {
+        duration = left;
     }
-    let still = [Wave { amplitude: 0.0, frequency: 0.0, phase: 0.0 }; WAVES];
-    let mut part = Move { start: 0.0, duration, from: from.to_vec(), travel, waves: vec![still; from.len()] };
-    if duration > DURATION[1] {
-        part = part.lasting_less(DURATION[1]);
-    }
-    if waving > 0.0 {
-        for joint in 0..from.len() {
-            if limits.moves[joint] {
-                part.waves[joint] = random.waves(limits, waving, &part, joint);
-            }
-        }
+    let mut part = Move::rest(from, duration);
+    for joint in 0..from.len() {
+        random.joint(limits, &mut part, joint);
     }
     part
 }
 
+/// The same move, but for one joint, which does something else.
+pub(super) fn redraw(limits: &Limits, stream: Stream, part: &Move, joint: usize) -> Move {
+    let mut other = part.clone();
+    Draw { stream, counter: 0 }.joint(limits, &mut other, joint);
+    other
+}
+
 impl Draw {
-    fn travel(&mut self, limits: &Limits, purpose: Purpose, duration: f64, from: f64, joint: usize) -> f64 {
-        let (aim, still) = (self.between(limits.range[joint]), self.between([0.0, 1.0]));
+    fn joint(&mut self, limits: &Limits, part: &mut Move, joint: usize) {
+        let purpose = Purpose::of(self.between([0.0, 1.0]));
+        let (aim, slow) = (self.between(limits.range[joint]), self.between(SLOW));
         if !limits.moves[joint] {
-            return 0.0;
+            return;
         }
-        let far = aim - from;
-        match purpose {
-            Purpose::Far | Purpose::Waving if still < STILL => 0.0,
-            Purpose::Far | Purpose::Waving => far,
-            Purpose::Shaking | Purpose::Slow => {
-                let share = self.between(SLOW) * limits.velocity[joint];
-                far.signum() * far.abs().min(share * duration / WAY_PEAKS[0])
-            }
-        }
+        // Shares of the limits of velocity and acceleration: of the way, of the sines.
+        let [way, waving] = match purpose {
+            Purpose::Far => [1.0, 0.0],
+            Purpose::Waving => [0.5, 0.5],
+            Purpose::Shaking => [slow, 0.8],
+            Purpose::Slow => [slow, 0.0],
+            Purpose::Still => [0.0, 0.0],
+        };
+        let far = aim - part.from[joint];
+        let most = (limits.velocity[joint] * part.duration / WAY_PEAKS[0])
+            .min(limits.acceleration[joint] * part.duration.powi(2) / WAY_PEAKS[1]);
+        part.travel[joint] = far.signum() * far.abs().min(way * most);
+        part.waves[joint] =
+            if waving > 0.0 { self.waves(limits, waving, part, joint) } else { [Wave::NONE; WAVES] };
     }
 
     /// Sines that keep their share of the limits, within the room that the way leaves at its ends.
@@ -126,22 +134,5 @@ impl Draw {
         let scale = largest * self.between([LEAST_WAVES, 1.0]);
         waves.iter_mut().for_each(|wave| wave.amplitude *= scale);
         waves
-    }
-}
-
-/// The least time for a way at a share of the limits (s).
-fn shortest(limits: &Limits, share: f64, travel: &[f64]) -> f64 {
-    let times = travel.iter().enumerate().map(|(joint, travel)| {
-        let speed = WAY_PEAKS[0] * travel.abs() / (share * limits.velocity[joint]);
-        let acceleration = WAY_PEAKS[1] * travel.abs() / (share * limits.acceleration[joint]);
-        speed.max(acceleration.sqrt())
-    });
-    times.fold(0.0, f64::max)
-}
-
-impl Move {
-    /// The same at the same speed in less time.
-    fn lasting_less(&self, duration: f64) -> Move {
-        Move { duration, ..self.shrunk(duration / self.duration) }
     }
 }

@@ -12,7 +12,7 @@ const INERTIAL: usize = 10;
 /// Parameters of a joint: bias, Coulomb and viscous friction, rotor inertia.
 const OF_JOINT: usize = 4;
 /// Time between the rows of a move (s).
-const SPACING: f64 = 0.05;
+const SPACING: f64 = 0.1;
 /// For the derivative of the momentum by time (s).
 const STEP: f64 = 1e-4;
 /// Velocity at which Coulomb friction has 76 % of its torque (rad/s, m/s).

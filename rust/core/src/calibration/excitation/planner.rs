@@ -1,10 +1,10 @@
 //! The planning of a motion, move by move.
 
 use super::clearance::Clearance;
-use super::draw::{draw, Purpose, TURNS};
+use super::draw::{draw, redraw};
 use super::information::{Gain, Information};
 use super::limits::Limits;
-use super::motion::{Motion, Move, Wave, WAVES};
+use super::motion::{Motion, Move};
 use super::Excitation;
 use crate::error::{Error, Result};
 use crate::math::random::Stream;
@@ -14,14 +14,12 @@ use crate::robot::Robot;
 const SECONDS: [f64; 2] = [1.0, 600.0];
 /// Most rows of a motion.
 const MOST_ROWS: f64 = 2e6;
-/// Random moves of which the best one is taken, and at least where there are many parameters.
+/// Random moves of which the best one is improved, by as many attempts; the first number where there are many parameters.
 const DRAWS: [u64; 2] = [3, 48];
-/// Number of parameters up to which all are drawn; beyond, the work stays the same.
-const FEW_PARAMETERS: f64 = 150.0;
+/// Number of parameters up to which all are drawn (an arm of seven joints has 98); beyond, the work stays the same.
+const FEW_PARAMETERS: f64 = 100.0;
 /// How much of a move is tried where all of it is not clear.
 const SHARES: [f64; 4] = [1.0, 0.6, 0.3, 0.1];
-/// A rest that is shorter than a move (s) is added to the last one.
-const SHORTEST: f64 = 1.0;
 /// Where no move is clear, the robot waits so long (s) and tries others.
 const WAIT: f64 = 0.1;
 /// Less time than this is none (s).
@@ -112,8 +110,8 @@ impl<'a> ExcitationPlanner<'a> {
         if left <= ROUNDING {
             return false;
         }
-        let purpose = TURNS[self.moves.len() % TURNS.len()];
-        let mut part = self.best(purpose, left).unwrap_or_else(|| self.wait(left));
+        let wait = Move::rest(&self.at, WAIT.min(left));
+        let mut part = self.best(left).unwrap_or(wait);
         part.start = self.time - left;
         self.at = part.end();
         self.moves.push(part);
@@ -132,19 +130,19 @@ impl<'a> ExcitationPlanner<'a> {
     }
 
     /// The best clear move of some random ones, and counts it as taken.
-    fn best(&mut self, purpose: Purpose, left: f64) -> Option<Move> {
+    fn best(&mut self, left: f64) -> Option<Move> {
         let stream = self.stream.fork(2).fork(self.moves.len() as u64);
         let mut drawn: Vec<(Move, Gain)> = vec![];
         for number in 0..self.draws() {
-            let part = draw(&self.limits, purpose, stream.fork(number), &self.at);
-            let part = fitted(part, left);
+            let part = draw(&self.limits, stream.fork(number), &self.at, left);
             if let Some(gain) = self.information.gain(self.robot, &part) {
                 drawn.push((part, gain));
             }
         }
-        drawn.sort_by(|(_, one), (_, other)| other.rate.total_cmp(&one.rate));
+        drawn.sort_by(|(_, one), (_, other)| one.rate.total_cmp(&other.rate));
+        self.improve(&mut drawn, stream);
         for share in SHARES {
-            for (part, _) in &drawn {
+            for (part, _) in drawn.iter().rev() {
                 let part = part.shrunk(share);
                 if self.clearance.allows_move(self.robot, &part) {
                     if let Some(gain) = self.information.gain(self.robot, &part) {
@@ -157,23 +155,24 @@ impl<'a> ExcitationPlanner<'a> {
         None
     }
 
+    /// Appends better and better moves to those drawn, which are sorted: one joint after another does something else.
+    fn improve(&mut self, drawn: &mut Vec<(Move, Gain)>, stream: Stream) {
+        let draws = self.draws();
+        for number in draws..2 * draws {
+            let Some((best, best_gain)) = drawn.last() else { return };
+            let part = redraw(&self.limits, stream.fork(number), best, number as usize % self.at.len());
+            if let Some(gain) = self.information.gain(self.robot, &part) {
+                if gain.rate > best_gain.rate {
+                    drawn.push((part, gain));
+                }
+            }
+        }
+    }
+
     fn draws(&self) -> u64 {
         let [least, most] = DRAWS;
         let size = (FEW_PARAMETERS / self.information.parameters() as f64).min(1.0);
         ((most as f64 * size.powi(3)) as u64).max(least)
-    }
-
-    fn wait(&self, left: f64) -> Move {
-        let still = Wave { amplitude: 0.0, frequency: 0.0, phase: 0.0 };
-        let joints = self.at.len();
-        let part = Move {
-            start: 0.0,
-            duration: WAIT,
-            from: self.at.clone(),
-            travel: vec![0.0; joints],
-            waves: vec![[still; WAVES]; joints],
-        };
-        Move { duration: WAIT.min(left), ..part }
     }
 
     /// A clear pose: neutral or the middle of the ranges, else a random one; where joints are held, the one of some in
@@ -206,14 +205,5 @@ impl<'a> ExcitationPlanner<'a> {
             Error::input("robot", text)
         };
         best.map(|(_, pose)| pose).ok_or_else(none)
-    }
-}
-
-/// A move that fits into the time that is left, and leaves none that is too short for another one.
-fn fitted(part: Move, left: f64) -> Move {
-    if left - part.duration < SHORTEST {
-        part.lasting(left)
-    } else {
-        part
     }
 }
