@@ -9,6 +9,7 @@ from ._core import (
     ContactMonitor,
     ContactParticleFilter,
     ContactReport,
+    Finding,
     ForceTorqueSensor,
     Isolation,
     LoadCompensator,
@@ -21,6 +22,7 @@ from ._core import (
     SurfaceSamples,
     __version__,
     build_profile,
+    diagnose,
 )
 from .errors import ContactSenseError, GeometryError, InputError, ModelError
 from .log import Log
@@ -36,6 +38,7 @@ __all__ = [
     "ContactParticleFilter",
     "ContactReport",
     "ContactSenseError",
+    "Finding",
     "ForceTorqueSensor",
     "GeometryError",
     "InputError",
@@ -53,4 +56,5 @@ __all__ = [
     "SurfaceSamples",
     "__version__",
     "build_profile",
+    "diagnose",
 ]

@@ -10,6 +10,7 @@ use serde::de::DeserializeOwned;
 use serde::Serialize;
 
 use crate::contact::{PyCandidate, PyContact, PyIsolation};
+use crate::diagnosis::PyFinding;
 use crate::errors::{input, refused};
 use crate::estimate::{PyContactEstimate, PyMode};
 use crate::noise::PyNoiseModel;
@@ -63,6 +64,7 @@ pub fn _restore<'py>(
         "ContactReport" => made(py, PyContactReport::from_content(read(content)?)),
         "ContactEstimate" => made(py, PyContactEstimate::from_content(read(content)?)),
         "Mode" => made(py, PyMode::from_content(read(content)?)),
+        "Finding" => made(py, PyFinding(read(content)?)),
         "NoiseModel" => made(py, PyNoiseModel(read(content)?)),
         "ForceTorqueSensor" => made(py, PyForceTorqueSensor(read(content)?)),
         "ClosestPoints" => made(py, ClosestPoints::from_arrays(content)?),
