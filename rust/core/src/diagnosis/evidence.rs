@@ -244,7 +244,7 @@ impl Evidence {
 
     /// Noise of the torque that the low-pass lets through, and a share of the torque that no model of an arm reaches.
     fn smallest_error(&self, motion: &Motion, joint: usize) -> f64 {
-        const SHARE: f64 = 0.01;
+        const SHARE: f64 = 0.003;
         const LEAST: f64 = 1e-3;
         let nv = motion.nv;
         let differences: Vec<f64> = (2..motion.len())

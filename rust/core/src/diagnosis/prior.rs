@@ -11,11 +11,11 @@ use crate::robot::{Kinematics, Robot, PARAMETERS};
 pub(super) type Spread = SMatrix<f64, PARAMETERS, PARAMETERS>;
 
 /// Standard deviations of the published inertial parameters of a body: share of the mass, ...
-const MASS: f64 = 0.08;
+const MASS: f64 = 0.04;
 /// ... of the body's size for each coordinate of its centre, ...
-const CENTRE: f64 = 0.1;
+const CENTRE: f64 = 0.06;
 /// ... and of mass times square of the size for its moments of inertia.
-const MOMENTS: f64 = 0.15;
+const MOMENTS: f64 = 0.1;
 
 /// Bodies are at least so large (m), for centres of small wrists are as uncertain as others.
 const SMALLEST_SIZE: f64 = 0.03;

@@ -17,6 +17,9 @@ const SPOILING_SHARE: f64 = 0.045;
 /// What is less than this share of it is not worth a word.
 const WORTH_A_WORD: f64 = 0.5;
 
+/// A load or a tool can be told from errors of all links' masses where it is so much likelier (nats).
+const SURE: f64 = 25.0;
+
 /// Factors nearer to 1 than this are the error of good sensors.
 const SPOILING_SCALE: f64 = 0.12;
 const SCALE_WORTH_A_WORD: f64 = 0.06;
@@ -40,6 +43,8 @@ struct Report<'a> {
     best: &'a Explained,
     share: Vec<f64>,
     total: f64,
+    /// By how much it is likelier than its absence (nats).
+    gain: f64,
 }
 
 /// The findings of one fault; none where it is too small to matter.
@@ -56,7 +61,7 @@ pub(super) fn findings(
         sigma.iter().zip(&reference.effort).map(|(s, effort)| (s / effort).powi(2)).sum()
     };
     let total = 1.0 - weighted(&left) / weighted(&plain.sigma);
-    let report = Report { robot, evidence, reference, best, share, total };
+    let report = Report { robot, evidence, reference, best, share, total, gain: best.score - plain.score };
     match &best.fault {
         Fault::Sign(joints) => report.sign(joints),
         Fault::Scale(joint, factor) => report.scale(*joint, *factor),
@@ -102,7 +107,7 @@ impl Report<'_> {
     fn scale(&self, joint: Option<usize>, factor: f64) -> Vec<Finding> {
         /// Newton millimetres in a newton metre, which a factor is taken for within this share.
         const MILLIMETRES: f64 = 1000.0;
-        const NEAR: f64 = 0.1;
+        const NEAR: f64 = 0.25;
         let size = factor.abs().ln().abs();
         if size < SCALE_WORTH_A_WORD {
             return vec![];
@@ -213,7 +218,7 @@ impl Report<'_> {
             Finding::new(FaultCode::Tool, text)
         };
         finding.link = Some(link.into());
-        vec![finding.sized(mass, "kg").explaining(self.total).major_if(worst > 1.0)]
+        vec![finding.sized(mass, "kg").explaining(self.total).major_if(worst > 1.0 && self.gain > SURE)]
     }
 
     /// The name and placement of the link that a body's joint moves; others are fixed to it.

@@ -6,6 +6,9 @@ use super::motion::{median, Motion};
 /// Velocities are compared over windows of so many seconds: noise of positions then matters little.
 const WINDOW: f64 = 0.03;
 
+/// Time constant of the smoothing of positions and velocities (s).
+const SMOOTHING: f64 = 0.03;
+
 /// Delays that are tried first (s).
 const COARSE: [f64; 16] =
     [-0.06, -0.04, -0.03, -0.02, -0.01, -0.005, 0.0, 0.005, 0.01, 0.02, 0.03, 0.04, 0.06, 0.08, 0.1, 0.15];
@@ -115,13 +118,16 @@ fn middle(a: Lag, b: Lag) -> Lag {
 fn misfit(motion: &Motion, lag: Lag) -> Option<f64> {
     let nv = motion.nv;
     let moving = motion.moving_joints();
-    let (angle, v) = match lag {
-        Lag::Delay(seconds) => (motion.angle.clone(), motion.shifted(&motion.v, seconds)),
-        Lag::LowPass { time, damping } => (passed(motion, time, damping), motion.v.clone()),
+    let angle = match lag {
+        Lag::Delay(seconds) => motion.shifted(&motion.angle, -seconds),
+        Lag::LowPass { time, damping } => passed(motion, &motion.angle, time, damping),
     };
+    // A lag that smooths the noise of positions would have an advantage; smoothed once more, it has none.
+    let angle = passed(motion, &angle, SMOOTHING, None);
+    let v = passed(motion, &motion.v, SMOOTHING, None);
     let window = ((WINDOW / motion.step()).round() as usize).max(1);
     // At both ends delays are extrapolated and low-passes not settled.
-    let edge = motion.time[0] + 0.4;
+    let edge = motion.time[0] + 0.6;
     let end = motion.time[motion.len() - 1] - 0.2;
     let mut squares = vec![];
     for first in (0..motion.len().saturating_sub(window)).step_by(window) {
@@ -163,18 +169,15 @@ fn misfit(motion: &Motion, lag: Lag) -> Option<f64> {
     Some(squares.iter().map(|square| square.min(limit)).sum::<f64>() / squares.len() as f64)
 }
 
-/// The positions low-passed as velocities may have been.
-fn passed(motion: &Motion, time: f64, damping: Option<f64>) -> Vec<f64> {
+/// Values low-passed as velocities may have been; `damping` of a second-order filter.
+fn passed(motion: &Motion, values: &[f64], time: f64, damping: Option<f64>) -> Vec<f64> {
     let nv = motion.nv;
-    let mut out = motion.angle.clone();
+    let mut out = values.to_vec();
     for k in 0..nv {
-        let slope = motion.v[k];
-        let lag = time * damping.map_or(1.0, |damping| 2.0 * damping);
-        let (mut y, mut rate) = (motion.angle[k] - lag * slope, slope);
-        out[k] = y;
+        let (mut y, mut rate) = (values[k], 0.0);
         for row in 1..motion.len() {
             let step = motion.time[row] - motion.time[row - 1];
-            let (a, b) = (motion.angle[(row - 1) * nv + k], motion.angle[row * nv + k]);
+            let (a, b) = (values[(row - 1) * nv + k], values[row * nv + k]);
             let parts = ((8.0 * step / time).ceil() as usize).clamp(1, 200);
             let h = step / parts as f64;
             for part in 0..parts {
