@@ -154,7 +154,10 @@ impl Trial<'_> {
 
     /// A factor of torques by turns with what else explains them.
     fn scale(&self, joint: Option<usize>, plain: &Fit, cost: f64) -> Option<Explained> {
-        const ROUNDS: usize = 6;
+        const ROUNDS: usize = 3;
+        /// First and last step of the search for the factor, relative.
+        const SEARCH: f64 = 0.2;
+        const FINEST: f64 = 0.01;
         let evidence = self.evidence;
         let joints: Vec<usize> = joint.map_or_else(|| (0..evidence.nv).collect(), |joint| vec![joint]);
         let mut factor = 0.0;
@@ -195,6 +198,21 @@ impl Trial<'_> {
             if settled {
                 break;
             }
+        }
+        // Masses and factor make up for each other, so that taking turns converges slowly.
+        let mut step = SEARCH;
+        while step > FINEST {
+            let Fault::Scale(_, middle) = best.as_ref()?.fault else { break };
+            for factor in [middle * (1.0 + step), middle / (1.0 + step)] {
+                let target = joints
+                    .iter()
+                    .fold(Target::plain(evidence), |target, k| target.scaled(evidence, *k, factor));
+                let explained = self.explained(Fault::Scale(joint, factor), target, self.prior, cost)?;
+                if best.as_ref().is_none_or(|best| explained.score > best.score) {
+                    best = Some(explained);
+                }
+            }
+            step *= 0.5;
         }
         best
     }

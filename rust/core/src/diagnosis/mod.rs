@@ -11,6 +11,7 @@ mod fit;
 mod hypothesis;
 mod limit;
 mod motion;
+mod order;
 mod prior;
 mod report;
 mod search;
@@ -108,6 +109,10 @@ pub fn diagnose(robot: &Robot, recording: &Recording<'_>) -> Result<Vec<Finding>
         let text = "torques were not judged: with a floating base the forces of the ground are part of them";
         findings.push(Finding::new(FaultCode::NotJudged, text.into()));
     } else {
+        if let Some((order, finding)) = order::find(robot, &motion) {
+            motion = order::reordered(&motion, &order);
+            findings.push(finding);
+        }
         let limits = limit::at_limits(robot, &motion);
         findings.extend(limit::findings(robot, &motion, &limits));
         findings.extend(search::search(robot, &motion, &limit::rows_at_limits(&limits, motion.len())));

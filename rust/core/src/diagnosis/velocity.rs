@@ -24,7 +24,10 @@ const WORTH_A_WORD: f64 = 4e-3;
 const SPOILING: f64 = 8e-3;
 
 /// A low-pass rather than a delay must explain so much more.
-const RATHER: f64 = 0.98;
+const RATHER: f64 = 0.965;
+
+/// Halvings of the distance between what is tried: from 10 ms to a tenth of a millisecond.
+const REFINEMENTS: usize = 7;
 
 /// Low-passes of velocities: one pole, two equal poles, Butterworth's two.
 const DAMPINGS: [Option<f64>; 3] = [None, Some(1.0), Some(std::f64::consts::FRAC_1_SQRT_2)];
@@ -82,7 +85,7 @@ pub(super) fn lag(motion: &mut Motion) -> Option<Finding> {
 fn refined(motion: &Motion, tried: &[Lag]) -> Option<(Lag, f64)> {
     let mut all: Vec<(Lag, f64)> =
         tried.iter().filter_map(|lag| Some((*lag, misfit(motion, *lag)?))).collect();
-    for _ in 0..4 {
+    for _ in 0..REFINEMENTS {
         let best = (0..all.len()).min_by(|a, b| all[*a].1.total_cmp(&all[*b].1))?;
         let mut between = vec![];
         for other in [best.checked_sub(1), Some(best + 1)].into_iter().flatten() {
