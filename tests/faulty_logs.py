@@ -410,6 +410,9 @@ def main() -> None:
                 good = not any(f.severity == "major" for f in found)
                 quiet = not found
                 expected = {}
+            elif name == "permuted_all" and base.model.nq != base.model.nv:
+                count -= 1  # (cos, sin) of a continuous joint cannot be taken for an angle
+                continue
             else:
                 faulty, expected = FAULTS[name](base)
                 found = faulty.findings()

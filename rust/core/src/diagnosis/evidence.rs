@@ -33,6 +33,9 @@ const CORRELATION_TIME: f64 = 0.4;
 /// Rows without time are counted as at most so many independent ones.
 const MOST_POSES: f64 = 80.0;
 
+/// Poses of which no joint's differs by as much (rad; m) say the same.
+const SAME_POSE: f64 = 0.05;
+
 /// A row is slow where no joint has more than this share of its usual velocity.
 const SLOW: f64 = 0.1;
 
@@ -143,11 +146,9 @@ impl Evidence {
                 }
             }
         }
-        let effective = if moving {
-            (motion.duration() / CORRELATION_TIME).min(found.len() as f64)
-        } else {
-            (found.len() as f64).min(MOST_POSES)
-        };
+        let poses = distinct_poses(motion, &found) as f64;
+        let effective =
+            if moving { (motion.duration() / CORRELATION_TIME).min(poses) } else { poses.min(MOST_POSES) };
         let mut evidence = Evidence {
             nv,
             inertial,
@@ -383,4 +384,13 @@ fn slow_rows(robot: &Robot, motion: &Motion, most: usize) -> Vec<Row> {
             Row { index, unexplained, inertial, terms }
         })
         .collect()
+}
+
+/// How many poses the rows have.
+fn distinct_poses(motion: &Motion, found: &[Row]) -> usize {
+    let nv = motion.nv;
+    let pose = |row: &Row| -> Vec<i64> {
+        motion.angle[row.index * nv..][..nv].iter().map(|angle| (angle / SAME_POSE).round() as i64).collect()
+    };
+    found.iter().map(pose).collect::<std::collections::HashSet<_>>().len()
 }

@@ -100,13 +100,12 @@ impl Trial<'_> {
     /// All faults, the likeliest first.
     pub fn all(&self) -> Vec<Explained> {
         let mut found = vec![];
-        let Some(plain) = self.faultless() else { return found };
         let nv = self.evidence.nv;
         let choice = PER_CHOICE * (nv as f64).ln();
         found.extend(self.signs());
         for joint in std::iter::once(None).chain((0..nv).map(Some)) {
             let cost = PER_NUMBER + if joint.is_some() { choice } else { 0.0 };
-            found.extend(self.scale(joint, &plain, cost));
+            found.extend(self.scale(joint, cost));
         }
         found.extend(self.gravity());
         found.extend(self.permuted());
@@ -153,16 +152,19 @@ impl Trial<'_> {
     }
 
     /// A factor of torques by turns with what else explains them.
-    fn scale(&self, joint: Option<usize>, plain: &Fit, cost: f64) -> Option<Explained> {
+    fn scale(&self, joint: Option<usize>, cost: f64) -> Option<Explained> {
         const ROUNDS: usize = 3;
         /// First and last step of the search for the factor, relative.
-        const SEARCH: f64 = 0.2;
+        const SEARCH: f64 = 0.3;
         const FINEST: f64 = 0.01;
         let evidence = self.evidence;
         let joints: Vec<usize> = joint.map_or_else(|| (0..evidence.nv).collect(), |joint| vec![joint]);
         let mut factor = 0.0;
-        let mut x = plain.x.map(|_| 0.0);
-        let mut sigma: Vec<f64> = plain.sigma.clone();
+        let mut x = nalgebra::DVector::zeros(evidence.unknowns());
+        // All joints count alike at first: the noise of a fit with the wrong factor says little.
+        let mut sigma: Vec<f64> = (0..evidence.nv)
+            .map(|k| evidence.square(k, evidence.parts.torque(k)).sqrt().max(evidence.floor[k]))
+            .collect();
         let mut best: Option<Explained> = None;
         for _ in 0..ROUNDS {
             let (mut along, mut square) = (0.0, 0.0);

@@ -100,14 +100,22 @@ pub fn diagnose(robot: &Robot, recording: &Recording<'_>) -> Result<Vec<Finding>
     findings.extend(sensor_offset::findings(robot, &read, sensors, wrenches, times)?);
     if motion.consecutive {
         findings.extend(velocity::lag(&mut motion));
-    } else {
-        let text = "rows do not follow each other in time, or velocities do not belong to positions: delays and rotor \
-                    inertias were not judged, the rest from the slowest rows alone";
+    } else if !robot.floating_base() {
+        let text = if motion.stands_still() {
+            "the robot does not move: only gravity and constant torques were judged; record ten seconds in which all \
+             joints move"
+        } else {
+            "rows do not follow each other in time, or velocities do not belong to positions: delays and rotor inertias \
+             were not judged, the rest from the slowest rows alone"
+        };
         findings.push(Finding::new(FaultCode::NotJudged, text.into()));
     }
     if robot.floating_base() {
-        let text = "torques were not judged: with a floating base the forces of the ground are part of them";
-        findings.push(Finding::new(FaultCode::NotJudged, text.into()));
+        let what = if motion.consecutive { "torques were" } else { "torques and delays were" };
+        let text = format!(
+            "{what} not judged: with a floating base the forces of the ground are part of the torques"
+        );
+        findings.push(Finding::new(FaultCode::NotJudged, text));
     } else {
         if let Some((order, finding)) = order::find(robot, &motion) {
             motion = order::reordered(&motion, &order);

@@ -44,6 +44,19 @@ impl Motion {
         self.time.last().unwrap_or(&0.0) - self.time.first().unwrap_or(&0.0)
     }
 
+    /// Whether no joint changes its position.
+    pub fn stands_still(&self) -> bool {
+        /// Less is the noise of encoders (rad; m).
+        const STILL: f64 = 0.01;
+        let range = |k: usize| {
+            let values = self.angle.iter().skip(k).step_by(self.nv);
+            let (least, most) =
+                values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
+            most - least
+        };
+        (0..self.nv).all(|k| range(k) < STILL)
+    }
+
     /// The usual time between rows (s).
     pub fn step(&self) -> f64 {
         median(self.time.windows(2).map(|pair| pair[1] - pair[0]).collect())
