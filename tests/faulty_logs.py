@@ -83,7 +83,7 @@ def noise_scale(effort: np.ndarray) -> np.ndarray:
 
 
 def simulated(name: str, seed: int, seconds: float | None = None, rate: float | None = None) -> Case:
-    """A faultless log: 2 % wrong masses, small bias and friction, noise of 0.05 to 0.1 Nm, quantised encoders."""
+    """A faultless log: 2 % wrong masses, small bias and friction, noise to 0.1 Nm, quantised encoders."""
     rng = np.random.default_rng(seed)
     robot = arm(name)
     seconds = rng.uniform(10, 30) if seconds is None else seconds
@@ -132,7 +132,9 @@ def _panda_free() -> tuple[np.ndarray, ...]:
     (topic,) = [i for i, n in con.execute("select id, name from topics") if n.endswith("joint_states")]
     found = []
     wanted = [f"fer_joint{i}" for i in range(1, 8)]
-    for _, data in con.execute("select timestamp, data from messages where topic_id=? order by timestamp", (topic,)):
+    for _, data in con.execute(
+        "select timestamp, data from messages where topic_id=? order by timestamp", (topic,)
+    ):
         at = 4
 
         def read(form: str, count: int = 1, data: bytes = data) -> tuple:
@@ -356,10 +358,11 @@ def millimetres(case):
 FAULTS: dict[str, Callable[[Case], tuple[Case, dict]]] = {
     fault.__name__: fault
     for fault in (
-        sign_all, sign_one, scale_all, scale_one, gravity_free, permuted, permuted_all, payload, tool, armature,
-        friction, bias, velocity_late, torque_late, filtered, limit, gravity_direction, degrees, millimetres,
+        *(sign_all, sign_one, scale_all, scale_one, gravity_free, permuted, permuted_all, payload, tool),
+        *(armature, friction, bias, velocity_late, torque_late, filtered, limit, gravity_direction),
+        *(degrees, millimetres),
     )
-}  # fmt: skip
+}
 
 
 def is_right(case: Case, finding, expected: dict) -> bool:
@@ -382,9 +385,12 @@ def case(name: str, seed: int) -> Case:
 
 def shown(findings) -> str:
     """Findings in a line."""
-    return "; ".join(
-        f"{f.code}{'!' if f.severity == 'major' else ''} {f.joint or ''} {f.value:.3g} {f.evidence:.2f}" for f in findings
-    )
+
+    def one(finding) -> str:
+        mark = "!" if finding.severity == "major" else ""
+        return f"{finding.code}{mark} {finding.joint or ''} {finding.value:.3g} {finding.evidence:.2f}"
+
+    return "; ".join(one(finding) for finding in findings)
 
 
 def main() -> None:
@@ -420,7 +426,9 @@ def main() -> None:
                 quiet = good
             right += good
             if not good or given.verbose or not quiet:
-                misses.append(f"    {arms[index % len(arms)]} {given.first_seed + index} {expected}: {shown(found)}")
+                misses.append(
+                    f"    {arms[index % len(arms)]} {given.first_seed + index} {expected}: {shown(found)}"
+                )
         print(f"{name:18s} {right}/{count}", flush=True)
         for miss in misses:
             print(miss, flush=True)

@@ -23,6 +23,8 @@ SIGNATURES = {
     "LoadCompensator": "robot, sensors",
     "LoadCompensator.update": "q, v, a, wrenches",
     "NoiseModel": "*, torque=0.05, velocity=0.0, relative=0.03, model=0.1",
+    "diagnose": "robot, q, v, tau, *, sensors=(), wrenches=None, time=None",
+    "Finding.to_dict": "",
     "ContactIsolator": "robot, *, sensors=(), torque_threshold=1e-3, wrench_threshold=1e-3, "
     "wanted_contacts=(), "
     "max_contacts=5, pushing=True, noise=None, locate_within=0.05",
@@ -102,6 +104,8 @@ def at_run_time(name):
 def in_stub():
     found = {}
     for node in ast.parse(STUB.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.FunctionDef) and not node.name.startswith("_"):
+            found[node.name] = of_node(node.args)
         if not isinstance(node, ast.ClassDef):
             continue
         for member in node.body:

@@ -66,7 +66,7 @@ impl PyFinding {
     /// How large it is, in `unit`; NaN where the fault has no size. Of several joints, the worst.
     #[getter]
     fn value(&self) -> f64 {
-        self.0.value
+        self.0.value.unwrap_or(f64::NAN)
     }
 
     /// Unit of `value`, such as "kg", "Nm", "s" or "deg"; empty for a factor.

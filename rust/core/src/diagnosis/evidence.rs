@@ -2,11 +2,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::columns::{delayed, gravity_columns};
 use super::motion::Motion;
+use super::slow_rows::slow_rows;
 use super::target::Target;
 use crate::calibration::rows::{rows, Filter, Row, Term, TERMS};
 use crate::calibration::Log;
-use crate::robot::{JointKind, Kinematics, MomentumRegressor, Robot, PARAMETERS};
+use crate::robot::{Robot, PARAMETERS};
 
 /// Terms of a joint's own torque that a fault may need, in the order of their unknowns.
 pub(super) const OWN: [Term; 4] = [Term::Bias, Term::Coulomb, Term::Viscous, Term::Armature];
@@ -19,7 +21,7 @@ pub(super) const DELAYS: [f64; 16] =
 pub(super) const GAIN: f64 = 8.0;
 
 /// Velocity at which Coulomb friction has 76 % of its torque (rad/s; m/s).
-const FRICTION_VELOCITY: f64 = 0.03;
+pub(super) const FRICTION_VELOCITY: f64 = 0.03;
 
 /// Between rows that are kept (s): a few for each time constant of the low-pass.
 const SPACING: f64 = 0.025;
@@ -35,12 +37,6 @@ const MOST_POSES: f64 = 80.0;
 
 /// Poses of which no joint's differs by as much (rad; m) say the same.
 const SAME_POSE: f64 = 0.05;
-
-/// A row is slow where no joint has more than this share of its usual velocity.
-const SLOW: f64 = 0.1;
-
-/// Slow rows that are enough to judge from; fewer are filled up with the slowest others.
-const ENOUGH_SLOW_ROWS: usize = 60;
 
 /// The parts of a target: torques, the model's torque, gravity's along each axis, delayed torques.
 #[derive(Debug, Clone, Copy)]
@@ -260,130 +256,6 @@ impl Evidence {
         let noise = if noise.is_finite() { noise } else { 0.0 };
         (noise * passed).hypot(SHARE * self.square(joint, self.parts.torque(joint)).sqrt()).max(LEAST)
     }
-}
-
-/// The torques at other times, low-passed, at the rows found: one matrix a delay, `(rows, nv)`.
-fn delayed(motion: &Motion, filter: &Filter, found: &[Row]) -> Vec<DMatrix<f64>> {
-    let one =
-        |delay: &f64| low_passed(motion, &motion.shifted(&motion.tau, *delay), motion.nv, filter, found);
-    DELAYS.iter().map(one).collect()
-}
-
-/// Series low-passed as `rows` does, at the rows found.
-fn low_passed(motion: &Motion, values: &[f64], width: usize, filter: &Filter, found: &[Row]) -> DMatrix<f64> {
-    let mut out = DMatrix::zeros(found.len(), width);
-    let mut state = vec![0.0; width];
-    let mut next = 0;
-    for row in 0..motion.len() {
-        let step = if row == 0 { f64::INFINITY } else { motion.time[row] - motion.time[row - 1] };
-        if step > filter.longest_step {
-            state.fill(0.0);
-        } else {
-            let kept = (-filter.gain * step).exp();
-            for (k, y) in state.iter_mut().enumerate() {
-                let mean = 0.5 * (values[row * width + k] + values[(row - 1) * width + k]);
-                *y = kept * *y + (1.0 - kept) * mean;
-            }
-        }
-        if found.get(next).is_some_and(|found| found.index == row) {
-            out.row_mut(next).copy_from_slice(&state);
-            next += 1;
-        }
-    }
-    out
-}
-
-/// The torque that holds the robot against a unit of gravity along each axis, at the rows found, `(nv, 3)` each.
-fn gravity_columns(
-    robot: &Robot,
-    motion: &Motion,
-    filter: Option<&Filter>,
-    found: &[Row],
-) -> Vec<DMatrix<f64>> {
-    let (nq, nv) = (robot.nq(), robot.nv());
-    let mut kinematics = Kinematics::new(robot);
-    let mut of_row = |row: usize| -> DMatrix<f64> {
-        kinematics.set_configuration(robot, &motion.q[row * nq..][..nq]);
-        unit_gravity(robot, &kinematics)
-    };
-    let Some(filter) = filter else { return found.iter().map(|row| of_row(row.index)).collect() };
-    let mut values = Vec::with_capacity(motion.len() * nv * 3);
-    for row in 0..motion.len() {
-        values.extend_from_slice(of_row(row).as_slice());
-    }
-    let passed = low_passed(motion, &values, 3 * nv, filter, found);
-    (0..found.len()).map(|row| DMatrix::from_iterator(nv, 3, passed.row(row).iter().copied())).collect()
-}
-
-fn unit_gravity(robot: &Robot, kinematics: &Kinematics) -> DMatrix<f64> {
-    let mut columns = DMatrix::zeros(robot.nv(), 3);
-    for (index, body) in robot.bodies.iter().enumerate().skip(1) {
-        let state = &kinematics.bodies[index];
-        let com = state.position + state.rotation * body.com;
-        for &joint in robot.chain(index) {
-            let moved = &robot.bodies[joint];
-            let state = &kinematics.bodies[joint];
-            let lever = match moved.kind {
-                JointKind::Prismatic => state.axis(),
-                JointKind::FreeFlyer => continue,
-                _ => state.axis().cross(&(com - state.position)),
-            };
-            for direction in 0..3 {
-                columns[(moved.idx_v, direction)] -= body.mass * lever[direction];
-            }
-        }
-    }
-    columns
-}
-
-/// Slow rows as if the robot were at rest: what acceleration does is not known, and little.
-fn slow_rows(robot: &Robot, motion: &Motion, most: usize) -> Vec<Row> {
-    let nv = robot.nv();
-    let usual: Vec<f64> = (0..nv)
-        .map(|k| {
-            (motion.v.iter().skip(k).step_by(nv).map(|v| v * v).sum::<f64>() / motion.len().max(1) as f64)
-                .sqrt()
-        })
-        .collect();
-    let speed = |row: usize| -> f64 {
-        (0..nv).map(|k| motion.v[row * nv + k].abs() / usual[k].max(1e-9)).fold(0.0, f64::max)
-    };
-    let mut order: Vec<(usize, f64)> = (0..motion.len()).map(|row| (row, speed(row))).collect();
-    order.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let slow =
-        order.iter().filter(|(_, speed)| *speed < SLOW).count().max(ENOUGH_SLOW_ROWS).max(order.len() / 5);
-    let mut chosen: Vec<usize> = order.iter().take(slow).map(|(row, _)| *row).collect();
-    chosen.sort_unstable();
-    let thin = chosen.len().div_ceil(most.min(2000)).max(1);
-    let mut kinematics = Kinematics::new(robot);
-    let mut regressor = MomentumRegressor::new(robot);
-    let parameters = DVector::from_vec(robot.inertial_parameters().concat());
-    chosen
-        .into_iter()
-        .step_by(thin)
-        .map(|index| {
-            let v = &motion.v[index * nv..][..nv];
-            let tau = &motion.tau[index * nv..][..nv];
-            kinematics.set_configuration(robot, &motion.q[index * robot.nq()..][..robot.nq()]);
-            kinematics.set_velocity(robot, v);
-            regressor.evaluate(robot, &kinematics);
-            let inertial = -&regressor.rate;
-            let mut terms = DMatrix::zeros(nv, TERMS.len());
-            for (column, term) in TERMS.iter().enumerate() {
-                for k in 0..nv {
-                    terms[(k, column)] = match term {
-                        Term::Bias => 1.0,
-                        Term::Coulomb => (v[k] / FRICTION_VELOCITY).tanh(),
-                        Term::Viscous => v[k],
-                        Term::Torque => tau[k],
-                        _ => 0.0,
-                    };
-                }
-            }
-            let unexplained = DVector::from_column_slice(tau) - &inertial * &parameters;
-            Row { index, unexplained, inertial, terms }
-        })
-        .collect()
 }
 
 /// How many poses the rows have.

@@ -96,8 +96,8 @@ pub struct Finding {
     pub link: Option<String>,
     /// Name of the force/torque sensor.
     pub sensor: Option<String>,
-    /// How large it is, in `unit`; NaN where the fault has no size.
-    pub value: f64,
+    /// How large it is, in `unit`; none where the fault has no size.
+    pub value: Option<f64>,
     /// Of the value; empty for a factor.
     pub unit: String,
     /// The centre of mass of a payload in its link's frame (m), or gravity in the world's (m/s^2).
@@ -117,7 +117,7 @@ impl Finding {
             joint: None,
             link: None,
             sensor: None,
-            value: f64::NAN,
+            value: None,
             unit: String::new(),
             vector: None,
             message,
@@ -132,7 +132,7 @@ impl Finding {
     }
 
     pub(super) fn sized(mut self, value: f64, unit: &'static str) -> Self {
-        self.value = value;
+        self.value = Some(value);
         self.unit = unit.into();
         self
     }

@@ -5,18 +5,25 @@
 //! with the largest marginal likelihood is reported and taken out, and the rest looked at again.
 
 mod assignment;
+mod columns;
 mod evidence;
 mod finding;
 mod fit;
+mod gravity;
 mod hypothesis;
 mod limit;
 mod motion;
 mod order;
+mod permutation;
 mod prior;
 mod report;
+mod scale;
 mod search;
 mod sensor_offset;
+mod slow_rows;
 mod target;
+mod time_step;
+mod torque_delay;
 mod units;
 mod velocity;
 
@@ -136,6 +143,9 @@ fn rank(findings: &mut [Finding]) {
 }
 
 fn check(robot: &Robot, time: Option<&[f64]>, q: &[f64], v: &[f64], tau: &[f64], n: usize) -> Result<()> {
+    if let Some(time) = time.filter(|time| time.len() != n) {
+        return Err(Error::input("time", format!("must have one number a row, {n}, not {}", time.len())));
+    }
     let steps: Vec<f64>;
     let time = match time {
         Some(time) => time,
@@ -149,4 +159,46 @@ fn check(robot: &Robot, time: Option<&[f64]>, q: &[f64], v: &[f64], tau: &[f64],
         return Err(Error::input("q", format!("must have at least {LEAST_ROWS} rows, not {}", time.len())));
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::motion::tests::sines;
+    use super::*;
+
+    fn found(q: &[f64], v: &[f64], tau: &[f64]) -> Vec<Finding> {
+        let recording = Recording { time: None, q, v, tau, sensors: &[], wrenches: &[] };
+        diagnose(&Robot::example_arm(), &recording).expect("a log that can be used")
+    }
+
+    #[test]
+    fn a_log_without_fault_is_met_with_silence() {
+        let (_, q, v, tau) = sines(1e-2, 1500);
+        assert_eq!(found(&q, &v, &tau), []);
+    }
+
+    #[test]
+    fn two_faults_are_named_one_after_the_other() {
+        let (_, q, v, mut tau) = sines(1e-2, 1500);
+        for row in tau.chunks_exact_mut(7) {
+            row[1] *= -1.0;
+            row[3] += 4.0;
+        }
+        let found = found(&q, &v, &tau);
+        let named: Vec<_> = found.iter().map(|f| (f.code, f.joint.as_deref(), f.severity)).collect();
+        assert_eq!(named.len(), 2, "{found:?}");
+        assert!(named.contains(&(FaultCode::Sign, Some("joint_2"), Severity::Major)), "{found:?}");
+        assert!(named.contains(&(FaultCode::Bias, Some("joint_4"), Severity::Major)), "{found:?}");
+    }
+
+    #[test]
+    fn arrays_of_another_length_are_refused() {
+        let (_, q, v, tau) = sines(1e-2, 100);
+        let short = Recording { time: None, q: &q, v: &v, tau: &tau[7..], sensors: &[], wrenches: &[] };
+        let refused = diagnose(&Robot::example_arm(), &short).expect_err("a row is missing");
+        assert!(refused.to_string().contains("tau"), "{refused}");
+        let few =
+            Recording { time: None, q: &q[..70], v: &v[..70], tau: &tau[..70], sensors: &[], wrenches: &[] };
+        assert!(diagnose(&Robot::example_arm(), &few).expect_err("ten rows").to_string().contains("30 rows"));
+    }
 }

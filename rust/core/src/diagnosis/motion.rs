@@ -1,5 +1,6 @@
 //! A log as diagnosis reads it: averaged to a rate that the robot's motion needs, with the time between rows.
 
+use super::time_step::time_scale;
 use crate::robot::configuration::spread_torque;
 use crate::robot::{JointKind, Robot};
 
@@ -8,9 +9,6 @@ const AVERAGED_STEP: f64 = 5e-3;
 
 /// Share of the motion of the positions that the velocities explain in consecutive rows.
 const CONSECUTIVE: f64 = 0.8;
-
-/// Rows over which positions are compared with velocities: noise of single rows then matters little.
-const STRIDES: usize = 400;
 
 /// The step of a row is estimated anew where that leaves this share of the misfit: stamps of real logs jitter.
 const JITTERS: f64 = 0.5;
@@ -76,7 +74,7 @@ impl Motion {
             consecutive: false,
             retimed: false,
         };
-        let width = if n == 0 { 0 } else { tau.len() / n };
+        let width = tau.len().checked_div(n).unwrap_or(0);
         for (row, out) in tau.chunks_exact(width.max(1)).zip(motion.tau.chunks_exact_mut(nv.max(1))) {
             spread_torque(row, out);
         }
@@ -222,60 +220,6 @@ impl Motion {
     }
 }
 
-/// How many units of time a row takes (of `time`, else of one a row), and the share of the motion that this explains.
-fn time_scale(motion: &Motion, time: Option<&[f64]>) -> (f64, f64) {
-    let nv = motion.nv;
-    let n = motion.v.len() / nv.max(1);
-    let stride = (n / STRIDES).max(1);
-    if n < 3 {
-        return (0.0, 0.0);
-    }
-    let mut pairs: Vec<(f64, f64)> = vec![];
-    for k in 0..nv {
-        let mut of_joint = vec![];
-        for start in (0..n - stride).step_by(stride) {
-            let way: f64 = (start..start + stride)
-                .map(|row| {
-                    let step = time.map_or(1.0, |time| time[row + 1] - time[row]);
-                    0.5 * step * (motion.v[row * nv + k] + motion.v[(row + 1) * nv + k])
-                })
-                .sum();
-            of_joint.push((motion.angle[(start + stride) * nv + k] - motion.angle[start * nv + k], way));
-        }
-        let size = (of_joint.iter().map(|pair| pair.0 * pair.0).sum::<f64>() / of_joint.len() as f64).sqrt();
-        if size > 1e-9 {
-            pairs.extend(of_joint.iter().map(|(dq, way)| (dq / size, way / size)));
-        }
-    }
-    slope(&pairs)
-}
-
-/// The slope of a line through zero that a few outliers do not turn, and the share of the rest that it explains.
-fn slope(pairs: &[(f64, f64)]) -> (f64, f64) {
-    let mut kept: Vec<(f64, f64)> = pairs.to_vec();
-    let mut slope = 0.0;
-    let mut share = 0.0;
-    for _ in 0..4 {
-        let (mut xy, mut xx, mut yy) = (0.0, 0.0, 0.0);
-        for (y, x) in &kept {
-            xy += x * y;
-            xx += x * x;
-            yy += y * y;
-        }
-        if xx <= 0.0 || yy <= 0.0 {
-            return (0.0, 0.0);
-        }
-        slope = xy / xx;
-        share = xy * xy / (xx * yy);
-        let mut misfits: Vec<f64> = pairs.iter().map(|(y, x)| (y - slope * x).abs()).collect();
-        misfits.sort_by(f64::total_cmp);
-        // The worst tenth may be gaps.
-        let limit = 2.0 * misfits[misfits.len() * 9 / 10] + 1e-12;
-        kept = pairs.iter().copied().filter(|(y, x)| (y - slope * x).abs() <= limit).collect();
-    }
-    (slope, share)
-}
-
 /// The joints' positions as numbers without jumps, `(n, nv)`.
 fn angles(robot: &Robot, q: &[f64], n: usize) -> Vec<f64> {
     let (nq, nv) = (robot.nq(), robot.nv());
@@ -320,4 +264,57 @@ pub(super) fn median(mut values: Vec<f64>) -> f64 {
     }
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// A log of the example arm: every joint on a sine of its own.
+    pub(in crate::diagnosis) fn sines(step: f64, rows: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>) {
+        let robot = Robot::example_arm();
+        let (mut time, mut q, mut v, mut tau) = (vec![], vec![], vec![], vec![]);
+        for row in 0..rows {
+            let t = row as f64 * step;
+            time.push(t);
+            let rate = |k: usize| 1.0 + 0.3 * k as f64;
+            let at = |f: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
+                (0..7).map(|k| f(rate(k), rate(k) * t + k as f64)).collect()
+            };
+            let here = at(&|_, phase| 0.6 * phase.sin());
+            let speed = at(&|rate, phase| 0.6 * rate * phase.cos());
+            let change = at(&|rate, phase| -0.6 * rate * rate * phase.sin());
+            tau.extend(robot.inverse_dynamics(&here, &speed, &change).unwrap());
+            q.extend(here);
+            v.extend(speed);
+        }
+        (time, q, v, tau)
+    }
+
+    #[test]
+    fn the_step_follows_from_positions_and_velocities() {
+        let robot = Robot::example_arm();
+        let (_, q, v, tau) = sines(2e-3, 3000);
+        let motion = Motion::new(&robot, None, &q, &v, &tau);
+        assert!(motion.consecutive && !motion.retimed);
+        assert!((motion.duration() - 6.0).abs() < 0.02);
+        // Rows in another order do not follow each other.
+        let shuffled = |values: &[f64]| -> Vec<f64> {
+            (0..3000).flat_map(|row| values[row * 1009 % 3000 * 7..][..7].to_vec()).collect()
+        };
+        let motion = Motion::new(&robot, None, &shuffled(&q), &shuffled(&v), &shuffled(&tau));
+        assert!(!motion.consecutive);
+    }
+
+    #[test]
+    fn stamps_that_jitter_are_mended() {
+        let robot = Robot::example_arm();
+        let (time, q, v, tau) = sines(1e-2, 1500);
+        let stamps: Vec<f64> =
+            time.iter().enumerate().map(|(row, t)| t + 4e-3 * (row as f64 * 2.4).sin()).collect();
+        let motion = Motion::new(&robot, Some(&stamps), &q, &v, &tau);
+        assert!(motion.retimed);
+        let worst = motion.time.windows(2).map(|pair| (pair[1] - pair[0] - 1e-2).abs()).fold(0.0, f64::max);
+        assert!(worst < 1e-3, "{worst}");
+    }
 }

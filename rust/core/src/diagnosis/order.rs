@@ -27,7 +27,7 @@ const LEAST_GAIN: f64 = 30.0;
 /// The order in which the robot's joints are in the columns, if it is another and explains the log.
 pub(super) fn find(robot: &Robot, motion: &Motion) -> Option<(Vec<usize>, Finding)> {
     let nv = motion.nv;
-    if robot.nq() != nv || nv > MOST_JOINTS || nv < 2 || !motion.consecutive {
+    if robot.nq() != nv || !(2..=MOST_JOINTS).contains(&nv) || !motion.consecutive {
         return None;
     }
     let few = thinned(motion, (motion.len() / ROWS).max(1));

@@ -98,12 +98,6 @@ pub(super) fn search(robot: &Robot, motion: &Motion, left_out: &[bool]) -> Vec<F
             let trial = Trial { robot: &state.robot, evidence, prior: &prior, reference: &reference };
             let plain = trial.faultless()?;
             let mut all = trial.all();
-            if std::env::var_os("DIAGNOSE_DEBUG").is_some() {
-                eprintln!("plain {:.1} sigma {:.3?} floor {:.3?}", plain.score, plain.sigma, evidence.floor);
-                for e in all.iter().take(6) {
-                    eprintln!("   {:.1} {:?} sigma {:.3?}", e.score - plain.score, e.fault, e.fit.sigma);
-                }
-            }
             all.retain(|explained| !known.iter().any(|fault| explained.fault.is_like(fault)));
             let best = all.into_iter().next()?;
             Some((plain, best))

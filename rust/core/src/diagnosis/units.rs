@@ -66,3 +66,15 @@ pub(super) fn ratio(slope: f64) -> Option<Ratio> {
 pub(super) fn finding(text: &str, factor: f64) -> Finding {
     Finding::new(FaultCode::Units, text.to_string()).sized(factor, "").explaining(1.0).major_if(true)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_between_velocity_and_position_name_units() {
+        assert!(matches!(ratio(0.0175), Some(Ratio::Degrees)));
+        assert!(matches!(ratio(1.02e-3), Some(Ratio::Time(_, "ms"))));
+        assert!(ratio(1.0).is_none() && ratio(0.5).is_none());
+    }
+}

@@ -217,3 +217,39 @@ fn slopes(motion: &Motion) -> Vec<f64> {
     }
     v
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::motion::tests::sines;
+    use crate::robot::Robot;
+
+    fn motion() -> Motion {
+        let (time, q, v, tau) = sines(1e-2, 2000);
+        Motion::new(&Robot::example_arm(), Some(&time), &q, &v, &tau)
+    }
+
+    #[test]
+    fn velocities_in_time_have_no_lag() {
+        assert_eq!(lag(&mut motion()), None);
+    }
+
+    #[test]
+    fn late_velocities_are_found_and_mended() {
+        let mut late = motion();
+        late.v = late.shifted(&late.v, -0.025);
+        let found = lag(&mut late).expect("a lag");
+        assert_eq!(found.code, FaultCode::Delay);
+        assert!((found.value.unwrap() - 0.025).abs() < 1e-3, "{found}");
+        assert_eq!(lag(&mut late), None);
+    }
+
+    #[test]
+    fn filtered_velocities_are_told_from_late_ones() {
+        let mut filtered = motion();
+        filtered.v = passed(&filtered, &filtered.v, 0.032, None);
+        let found = lag(&mut filtered).expect("a lag");
+        assert_eq!((found.code, found.unit.as_str()), (FaultCode::Filtered, "Hz"));
+        assert!((found.value.unwrap() - 5.0).abs() < 0.5, "{found}");
+    }
+}
