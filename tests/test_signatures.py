@@ -16,7 +16,7 @@ SIGNATURES = {
     "Surface.closest_points": "points",
     "Surface.cast_rays": "origins, directions",
     "Surface.sample": "n, seed=0",
-    "MomentumObserver": "robot, *, dt, gain=50.0",
+    "MomentumObserver": "robot, *, dt, gain=50.0, calibration=None",
     "MomentumObserver.update": "q, v, tau, *, dt=None, friction=None",
     "MomentumObserver.reset": "",
     "ForceTorqueSensor": "name, link, *, pose=None, convention='load'",
@@ -36,15 +36,17 @@ SIGNATURES = {
     "exciting_motion": "robot, seconds, *, max_velocity=None, seed=0, dt=0.001, joints=None",
     "Motion.at": "time",
     "Motion.to_dict": "",
+    "diagnose": "robot, q, v, tau, *, sensors=(), wrenches=None, time=None",
+    "Finding.to_dict": "",
     "ContactIsolator": "robot, *, sensors=(), torque_threshold=1e-3, wrench_threshold=1e-3, "
     "wanted_contacts=(), "
-    "max_contacts=5, pushing=True, noise=None, locate_within=0.05",
+    "max_contacts=5, pushing=True, noise=None, locate_within=0.05, calibration=None",
     "ContactIsolator.isolate": "q, tau_ext, wrenches=None",
     "ContactMonitor": "robot, *, dt, sensors=(), wanted_contacts=(), observer_gain=50.0, "
     "torque_threshold=0.5, "
     "wrench_threshold=2.0, wrench_gain=None, bias_time_constant=None, bias_limit=30.0, "
     "bias_settle_time=None, hysteresis=0.2, hold_time=0.02, max_contacts=5, pushing=True, "
-    "locate_within=0.05",
+    "calibration=None, locate_within=0.05",
     "ContactMonitor.update": "q, v, tau, wrenches=None, *, dt=None, friction=None",
     "ContactMonitor.reset": "",
     "ContactParticleFilter": "robot, *, particles=10_000, motion='curvature', measurement='normal', "
@@ -52,7 +54,7 @@ SIGNATURES = {
     "links=None, "
     "seed=0, force_range=(1, 100), stiffness_range=(3e2, 3e4), radius_range=(5e-3, 1.0), "
     "schedule='adaptive', threads=1, likelihood='gaussian', torque_noise=0.02, relative_noise=0.03, "
-    "torque_threshold=0.2, noise=None",
+    "torque_threshold=0.2, noise=None, calibration=None",
     "ContactParticleFilter.update": "q, tau_ext, *, time=None",
     "ContactParticleFilter.reset": "",
     "Candidate.to_dict": "",

@@ -10,6 +10,7 @@ from ._core import (
     ContactMonitor,
     ContactParticleFilter,
     ContactReport,
+    Finding,
     ForceTorqueSensor,
     Isolation,
     JointFriction,
@@ -26,6 +27,7 @@ from ._core import (
     __version__,
     build_profile,
     exciting_motion,
+    diagnose,
 )
 from .calibration import Calibration, calibrate
 from .errors import ContactSenseError, GeometryError, InputError, ModelError
@@ -44,6 +46,7 @@ __all__ = [
     "ContactParticleFilter",
     "ContactReport",
     "ContactSenseError",
+    "Finding",
     "ForceTorqueSensor",
     "GeometryError",
     "InputError",
@@ -66,4 +69,5 @@ __all__ = [
     "build_profile",
     "calibrate",
     "exciting_motion",
+    "diagnose",
 ]

@@ -21,6 +21,7 @@ __all__ = [
     "ContactParticleFilter",
     "ContactReport",
     "ContactSenseError",
+    "Finding",
     "ForceTorqueSensor",
     "GeometryError",
     "InputError",
@@ -45,6 +46,7 @@ __all__ = [
     "_robot_from_urdf",
     "build_profile",
     "exciting_motion",
+    "diagnose",
 ]
 
 __version__: Final[str]
@@ -956,6 +958,111 @@ class NoiseModel:
         Returns:
             Plain Python values: numbers, and lists in place of arrays.
         """
+
+def diagnose(
+    robot: Robot,
+    q: ArrayLike,
+    v: ArrayLike,
+    tau: ArrayLike,
+    *,
+    sensors: Iterable[ForceTorqueSensor] = (),
+    wrenches: ArrayLike | None = None,
+    time: ArrayLike | None = None,
+) -> tuple[Finding, ...]:
+    """Finds what is wrong with a robot's model or measurements, from motion without contact.
+
+    Ten seconds or more in which all joints move say most. A few rows with contacts do no harm.
+
+    Args:
+        robot: The robot.
+        q: Configurations, `(n, nq)`, at least 30 rows in the order of time.
+        v: Velocities, `(n, nv)` [rad/s; m/s for sliding joints].
+        tau: Joint torques, `(n, nv)`, or `(n, nv - 6)` for a floating base [Nm; N for sliding joints].
+        sensors: Force/torque sensors, of `ForceTorqueSensor`.
+        wrenches: Their readings, `(n, n_sensors, 6)` [N, Nm], sensor axes; NaN where there is none.
+        time: Time of each row, `(n,)`, increasing [s]. Without it, equal steps are assumed, and their length follows from
+            `q` and `v`.
+
+    Returns:
+        What is wrong, the most important first; empty where all is well.
+
+    Raises:
+        InputError: Names the argument.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> rng = np.random.default_rng(0)
+        >>> q, v = rng.uniform(-1.0, 1.0, (60, 7)), np.zeros((60, 7))
+        >>> [finding.code for finding in cs.diagnose(robot, q, v, np.zeros((60, 7)))]
+        ['gravity_free', 'not_judged']
+    """
+
+@final
+class Finding:
+    """One thing that is wrong with a robot's model or measurements, as `diagnose` finds it.
+
+    Frozen; equal where all attributes are; can be pickled and copied.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> time = np.arange(0.0, 12.0, 0.01)[:, None]
+        >>> phase = time * np.linspace(1.0, 2.0, 7) + np.arange(7)
+        >>> q, v, a = 0.5 * np.sin(phase), 0.5 * np.linspace(1.0, 2.0, 7) * np.cos(phase), -0.5 * np.linspace(1.0, 2.0, 7) ** 2 * np.sin(phase)
+        >>> tau = np.array([robot.inverse_dynamics(*row) for row in zip(q, v, a)])
+        >>> cs.diagnose(robot, q, v, tau)
+        ()
+        >>> finding = cs.diagnose(robot, q, v, -tau)[0]
+        >>> finding.code, finding.severity, finding.joint
+        ('sign', 'major', None)
+    """
+
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, strings, None, and a list in place of the array.
+        """
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def code(self) -> str:
+        """What is wrong.
+
+        "sign", "scale", "gravity_free", "permuted", "payload", "tool", "armature", "friction", "bias", "delay",
+        "filtered", "limit", "sensor_offset", "gravity_direction", "units", or "not_judged" where something could not be
+        judged.
+        """
+    @property
+    def joint(self) -> str | None:
+        """Name of the joint; None where it is not one joint."""
+    @property
+    def link(self) -> str | None:
+        """Name of the link that carries a payload or a tool; otherwise None."""
+    @property
+    def sensor(self) -> str | None:
+        """Name of the force/torque sensor; otherwise None."""
+    @property
+    def value(self) -> float:
+        """How large it is, in `unit`; NaN where the fault has no size. Of several joints, the worst."""
+    @property
+    def unit(self) -> str:
+        """Unit of `value`, such as "kg", "Nm", "s" or "deg"; empty for a factor."""
+    @property
+    def vector(self) -> NDArray[np.float64]:
+        """Centre of mass of a payload in the link's frame [m], gravity in the world frame [m/s^2], or the offset of a sensor.
+
+        `(3,)`, NaN for other faults; read-only.
+        """
+    @property
+    def message(self) -> str:
+        """What is wrong, with sizes and units."""
+    @property
+    def evidence(self) -> float:
+        """Share of the variance, unexplained until then, that it explains, from 0 to 1."""
+    @property
+    def severity(self) -> Literal["minor", "major"]:
+        """ "major" where it spoils the detection of contacts, otherwise "minor"."""
 
 @final
 class ContactIsolator:

@@ -10,6 +10,7 @@ struct Readme;
 
 pub mod calibration;
 mod detection;
+pub mod diagnosis;
 pub mod error;
 pub mod isolation;
 pub mod load;

@@ -2,7 +2,7 @@
 //! them nor take their memory away.
 
 use contactsense::robot::LARGEST;
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
@@ -52,6 +52,27 @@ impl Vector {
     }
 }
 
+/// A table argument, row by row.
+pub struct Table {
+    pub numbers: Vec<f64>,
+    /// Lengths along each dimension.
+    pub shape: Vec<usize>,
+}
+
+impl Table {
+    /// An array of so many dimensions, described as `expected`.
+    pub fn new(name: &str, object: &Bound<'_, PyAny>, dimensions: usize, expected: &str) -> PyResult<Self> {
+        let wrong = || input(object.py(), format!("{name}: expected an array of shape {expected}"));
+        let converted = convert(name, object)?;
+        let array = converted.cast::<PyArrayDyn<f64>>().map_err(|_| wrong())?;
+        let view = array.try_readonly().map_err(|_| wrong())?;
+        if view.shape().len() != dimensions {
+            return Err(wrong());
+        }
+        Ok(Self { numbers: own(view.as_slice().map_err(|_| wrong())?)?, shape: view.shape().to_vec() })
+    }
+}
+
 /// Sensor readings `(n, 6)`; a NaN says that there is none.
 pub struct Readings(Vec<Option<[f64; 6]>>);
 
@@ -76,7 +97,7 @@ impl Readings {
 }
 
 /// A NaN leaves its sensor out, unless the row is refused for another number.
-fn reading(row: [f64; 6]) -> Option<[f64; 6]> {
+pub fn reading(row: [f64; 6]) -> Option<[f64; 6]> {
     let none = row.iter().any(|x| x.is_nan()) && !row.iter().any(|x| x.abs() >= LARGEST);
     (!none).then_some(row)
 }

@@ -13,6 +13,7 @@ mod columns;
 mod compensator;
 mod contact;
 mod description;
+mod diagnosis;
 mod errors;
 mod estimate;
 mod filter_options;
@@ -44,6 +45,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(urdf::_checked_urdf, module)?)?;
     module.add_function(wrap_pyfunction!(urdf::_robot_from_urdf, module)?)?;
     module.add_function(wrap_pyfunction!(pickle::_restore, module)?)?;
+    module.add_function(wrap_pyfunction!(diagnosis::diagnose, module)?)?;
     module.add_class::<robot::PyRobot>()?;
     module.add_class::<surface::PySurface>()?;
     module.add_class::<surface::ClosestPoints>()?;
@@ -60,6 +62,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<calibration_parts::PyPayload>()?;
     module.add_function(wrap_pyfunction!(motion::exciting_motion, module)?)?;
     module.add_class::<motion::PyMotion>()?;
+    module.add_class::<diagnosis::PyFinding>()?;
     module.add_class::<isolator::PyContactIsolator>()?;
     module.add_class::<contact::PyIsolation>()?;
     module.add_class::<contact::PyContact>()?;

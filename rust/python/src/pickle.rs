@@ -12,6 +12,7 @@ use serde::Serialize;
 use crate::calibration::PyCalibration;
 use crate::calibration_parts::{PyBodyInertia, PyJointFriction, PyPayload};
 use crate::contact::{PyCandidate, PyContact, PyIsolation};
+use crate::diagnosis::PyFinding;
 use crate::errors::{input, refused};
 use crate::estimate::{PyContactEstimate, PyMode};
 use crate::motion::PyMotion;
@@ -71,6 +72,7 @@ pub fn _restore<'py>(
         "BodyInertia" => made(py, PyBodyInertia(read(content)?)),
         "Payload" => made(py, PyPayload(read(content)?)),
         "Motion" => made(py, PyMotion::new(py, read(content)?)?),
+        "Finding" => made(py, PyFinding(read(content)?)),
         "NoiseModel" => made(py, PyNoiseModel(read(content)?)),
         "ForceTorqueSensor" => made(py, PyForceTorqueSensor(read(content)?)),
         "ClosestPoints" => made(py, ClosestPoints::from_arrays(content)?),

@@ -23,7 +23,6 @@ pub(crate) enum Term {
     /// `dv/dt`.
     Armature,
     /// The measured torque.
-    #[allow(dead_code)] // until diagnosis reads it
     Torque,
     /// Its rate, as [`Lead`] sees it.
     TorqueRate,

@@ -24,8 +24,8 @@ mod robot;
 pub(crate) mod test_tree;
 
 pub use description::{JointDescription, JointKind, LinkDescription, RobotDescription};
-pub(crate) use dynamics::MomentumRegressor;
 pub use dynamics::{ForwardDynamics, MomentumPass};
+pub(crate) use dynamics::{MomentumRegressor, PARAMETERS};
 pub use ids::{BodyIndex, LinkIndex};
 pub use kinematics::{BodyState, Kinematics};
 pub use link::Link;
