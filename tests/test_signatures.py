@@ -33,6 +33,8 @@ SIGNATURES = {
     "BodyInertia.to_dict": "",
     "Payload.to_dict": "",
     "NoiseModel.to_dict": "",
+    "NoiseModel.covariance": "robot, q, *, gain=50.0, dt=0.001",
+    "NoiseModel.correlation_time": "robot, q, *, gain=50.0, dt=0.001",
     "exciting_motion": "robot, seconds, *, max_velocity=None, seed=0, dt=0.001, joints=None",
     "Motion.at": "time",
     "Motion.to_dict": "",

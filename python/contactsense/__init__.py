@@ -26,8 +26,8 @@ from ._core import (
     SurfaceSamples,
     __version__,
     build_profile,
-    exciting_motion,
     diagnose,
+    exciting_motion,
 )
 from .calibration import Calibration, calibrate
 from .errors import ContactSenseError, GeometryError, InputError, ModelError
@@ -68,6 +68,6 @@ __all__ = [
     "__version__",
     "build_profile",
     "calibrate",
-    "exciting_motion",
     "diagnose",
+    "exciting_motion",
 ]

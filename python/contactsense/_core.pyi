@@ -45,8 +45,8 @@ __all__ = [
     "_restore",
     "_robot_from_urdf",
     "build_profile",
-    "exciting_motion",
     "diagnose",
+    "exciting_motion",
 ]
 
 __version__: Final[str]
@@ -501,7 +501,9 @@ class MomentumObserver:
         2.0
     """
 
-    def __new__(cls, robot: Robot, *, dt: float, gain: ArrayLike = 50.0) -> Self: ...
+    def __new__(
+        cls, robot: Robot, *, dt: float, gain: ArrayLike = 50.0, calibration: Calibration | None = None
+    ) -> Self: ...
     @property
     def robot(self) -> Robot:
         """The robot."""
@@ -952,6 +954,43 @@ class NoiseModel:
     @property
     def model_time(self) -> float | NDArray[np.float64]:
         """Time over which slow errors change [s]: a number or `(nv,)`; a read-only copy."""
+    def covariance(
+        self, robot: Robot, q: ArrayLike, *, gain: float = 50.0, dt: float = 0.001
+    ) -> NDArray[np.float64]:
+        """Covariance of the external torque of the untouched robot behind an observer.
+
+        White noise of the torque is averaged, white noise of the velocity passes through gain and mass matrix, and slow errors
+        pass as far as the observer follows them.
+
+        Args:
+            robot: The robot.
+            q: Configuration, `(nq,)`.
+            gain: Of the observer [1/s].
+            dt: Time between two calls [s].
+
+        Returns:
+            `(nv, nv)` [Nm^2].
+
+        Raises:
+            InputError: Names the argument.
+        """
+    def correlation_time(
+        self, robot: Robot, q: ArrayLike, *, gain: float = 50.0, dt: float = 0.001
+    ) -> NDArray[np.float64]:
+        """Over which time errors of the external torque behind an observer stay alike: samples so far apart are independent.
+
+        Args:
+            robot: The robot.
+            q: Configuration, `(nq,)`.
+            gain: Of the observer [1/s].
+            dt: Time between two calls [s].
+
+        Returns:
+            `(nv,)` [s].
+
+        Raises:
+            InputError: Names the argument.
+        """
     def to_dict(self) -> dict[str, Any]:
         """All attributes by name.
 
@@ -1116,6 +1155,7 @@ class ContactIsolator:
         pushing: bool = True,
         noise: NoiseModel | None = None,
         locate_within: float = 0.05,
+        calibration: Calibration | None = None,
     ) -> Self: ...
     @property
     def robot(self) -> Robot:
@@ -1365,6 +1405,7 @@ class ContactMonitor:
         hold_time: float = 0.02,
         max_contacts: int = 5,
         pushing: bool = True,
+        calibration: Calibration | None = None,
         locate_within: float = 0.05,
     ) -> Self: ...
     @property
@@ -1592,6 +1633,7 @@ class ContactParticleFilter:
         relative_noise: float = 0.03,
         torque_threshold: ArrayLike = 0.2,
         noise: NoiseModel | None = None,
+        calibration: Calibration | None = None,
     ) -> Self: ...
     @property
     def robot(self) -> Robot:

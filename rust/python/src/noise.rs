@@ -1,13 +1,17 @@
 //! `NoiseModel`.
 
 use contactsense::NoiseModel;
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::arguments::robot;
+use crate::arrays::Vector;
 use crate::errors::{input, to_python};
 use crate::observer::scalar_or_vector;
 use crate::pickle::{plain_dict, reduced, Reduced};
 use crate::returned::numbers;
+use crate::robot::PyRobot;
 
 /// Errors of the external torque of the untouched robot, each as one standard deviation.
 ///
@@ -105,6 +109,63 @@ impl PyNoiseModel {
     ///     Plain Python values: numbers, and lists in place of arrays.
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
         plain_dict(slf.as_any(), &["torque", "velocity", "relative", "model", "model_time"])
+    }
+
+    /// Covariance of the external torque of the untouched robot behind an observer.
+    ///
+    /// White noise of the torque is averaged, white noise of the velocity passes through gain and mass matrix, and slow errors
+    /// pass as far as the observer follows them.
+    ///
+    /// Args:
+    ///     robot: The robot.
+    ///     q: Configuration, `(nq,)`.
+    ///     gain: Of the observer [1/s].
+    ///     dt: Time between two calls [s].
+    ///
+    /// Returns:
+    ///     `(nv, nv)` [Nm^2].
+    ///
+    /// Raises:
+    ///     InputError: Names the argument.
+    #[pyo3(signature = (robot, q, *, gain=50.0, dt=0.001))]
+    fn covariance<'py>(
+        &self,
+        #[pyo3(from_py_with = robot)] robot: Bound<'py, PyRobot>,
+        q: &Bound<'py, PyAny>,
+        gain: f64,
+        dt: f64,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let py = robot.py();
+        let found = self.0.covariance(&robot.get().0, Vector::new("q", q)?.slice(), gain, dt);
+        let found = found.map_err(|error| to_python(py, error))?;
+        let rows: Vec<Vec<f64>> = found.row_iter().map(|row| row.iter().copied().collect()).collect();
+        Ok(PyArray2::from_vec2(py, &rows)?)
+    }
+
+    /// Over which time errors of the external torque behind an observer stay alike: samples so far apart are independent.
+    ///
+    /// Args:
+    ///     robot: The robot.
+    ///     q: Configuration, `(nq,)`.
+    ///     gain: Of the observer [1/s].
+    ///     dt: Time between two calls [s].
+    ///
+    /// Returns:
+    ///     `(nv,)` [s].
+    ///
+    /// Raises:
+    ///     InputError: Names the argument.
+    #[pyo3(signature = (robot, q, *, gain=50.0, dt=0.001))]
+    fn correlation_time<'py>(
+        &self,
+        #[pyo3(from_py_with = robot)] robot: Bound<'py, PyRobot>,
+        q: &Bound<'py, PyAny>,
+        gain: f64,
+        dt: f64,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let py = robot.py();
+        let found = self.0.correlation_time(&robot.get().0, Vector::new("q", q)?.slice(), gain, dt);
+        Ok(PyArray1::from_vec(py, found.map_err(|error| to_python(py, error))?))
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {

@@ -37,8 +37,12 @@ const ROUNDS: usize = 3;
 const FORGOTTEN: f64 = 3.0;
 /// Rows that are further apart say nothing of inertia (s).
 const LONGEST_STEP: f64 = 0.1;
+/// Coulomb friction is not the same at all speeds: one standard deviation, as a share of it.
+const FRICTION_SHAPE: f64 = 0.01;
 /// A centre of mass that is less certain is unknown (m).
 const UNKNOWN: f64 = 1.0;
+/// The longest lag of a correlation, as a part of the rows.
+const LONGEST_LAG: usize = 4;
 /// Correlations smaller than this end the sum.
 const UNCORRELATED: f64 = 0.05;
 
@@ -126,6 +130,13 @@ impl Fit {
             let variance = |j| self.covariance[(unknowns.term(j, term), unknowns.term(j, term))];
             (0..nv).map(|j| f64::sqrt(variance(j))).collect::<Vec<f64>>()
         };
+        // Friction of another shape than the one fitted changes both coefficients.
+        let shape: Vec<[f64; 2]> = (0..nv)
+            .map(|j| {
+                let error = FRICTION_SHAPE * z[unknowns.term(j, COULOMB)];
+                [error, error * unknowns.term_units[j][VISCOUS] / unknowns.term_units[j][COULOMB]]
+            })
+            .collect();
         let step_of = |rows: [usize; 2]| rows.map(|row| log.time[self.rows[row].index]);
         let contacts: Vec<[f64; 2]> = stretches(&self.used).into_iter().map(step_of).collect();
         let without_payload = unknowns.without_payload(z);
@@ -133,8 +144,8 @@ impl Fit {
             torque_bias: term(BIAS),
             torque_bias_std: deviation(BIAS),
             friction: self.friction(&unknowns.correction(z)),
-            coulomb_std: deviation(COULOMB),
-            viscous_std: deviation(VISCOUS),
+            coulomb_std: shape.iter().zip(deviation(COULOMB)).map(|([c, _], d)| c.hypot(d)).collect(),
+            viscous_std: shape.iter().zip(deviation(VISCOUS)).map(|([_, v], d)| v.hypot(d)).collect(),
             armature: armature(robot)
                 .iter()
                 .zip(term(ARMATURE))
@@ -289,7 +300,7 @@ fn filter_of(robot: &Robot, log: &Log<'_>, step: f64) -> Filter {
     Filter { gain, spacing: spacing.max(step) - 0.01 * step, longest_step: super::LONGEST_STEPS * step }
 }
 
-/// How large each term of a joint may be: each alone could be all of its torque.
+/// How large each term of a joint may be: each but the bias alone could be all of its torque.
 fn term_units(robot: &Robot, log: &Log<'_>, rows: &[Row]) -> Vec<[f64; TERMS]> {
     let root_mean_square = |value: &dyn Fn(&Row) -> f64| {
         (rows.iter().map(|row| value(row).powi(2)).sum::<f64>() / rows.len() as f64).sqrt()
@@ -298,11 +309,14 @@ fn term_units(robot: &Robot, log: &Log<'_>, rows: &[Row]) -> Vec<[f64; TERMS]> {
         let torque = root_mean_square(&|row| log.tau_of(row.index)[j]).max(SMALLEST_TORQUE);
         let velocity = root_mean_square(&|row| log.v_of(robot, row.index)[j]).max(SMALLEST_VELOCITY);
         let acceleration = root_mean_square(&|row| own_terms(row, j, 0)[ARMATURE]).max(SMALLEST_ACCELERATION);
-        [torque, torque, torque / velocity, torque / acceleration]
+        [BIAS_SHARE * torque + USUAL_BIAS, torque, torque / velocity, torque / acceleration]
     };
     (0..robot.nv()).map(unit).collect()
 }
 
+/// Sensors are off by some tenths of Nm (N), or per cent of their load: one standard deviation.
+const USUAL_BIAS: f64 = 0.3;
+const BIAS_SHARE: f64 = 0.02;
 /// A joint whose torques are smaller counts as if they were this large (Nm).
 const SMALLEST_TORQUE: f64 = 1e-3;
 /// A joint that moves more slowly counts as if it moved so fast (rad/s; m/s).
@@ -320,7 +334,7 @@ fn weight(residuals: &[DVector<f64>], used: &[bool], joint: usize) -> f64 {
 fn correlated_rows(residuals: &[DVector<f64>], joint: usize, square: f64) -> f64 {
     let count = residuals.len();
     let mut sum = 1.0;
-    for lag in 1..count / 10 {
+    for lag in 1..count / LONGEST_LAG {
         let products = (lag..count).map(|k| residuals[k][joint] * residuals[k - lag][joint]);
         let correlation = products.sum::<f64>() / ((count - lag) as f64 * square);
         if correlation < UNCORRELATED {

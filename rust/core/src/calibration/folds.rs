@@ -9,8 +9,12 @@ use super::unknowns::Unknowns;
 
 /// Consecutive blocks; each is judged by what the others teach.
 const BLOCKS: usize = 5;
-/// Shares by which bodies may differ from the description: from "as described" to "anything".
-pub(super) const CHANGES: [f64; 9] = [1e-3, 3e-3, 1e-2, 2e-2, 5e-2, 0.1, 0.3, 1.0, 3.0];
+/// Shares by which bodies may differ from the description: from what no description knows better, to anything.
+pub(super) const CHANGES: [f64; 6] = [0.02, 0.05, 0.1, 0.3, 1.0, 3.0];
+/// Share of a block at each end that is not fitted when others are judged.
+const MARGIN: f64 = 0.125;
+/// Mean squares that differ by so little (share, by joint) are equally good.
+const NO_MATTER: f64 = 0.02;
 /// Rows of one block.
 const FEWEST_ROWS: usize = 10;
 
@@ -30,6 +34,12 @@ pub(super) fn block_of(row: usize, rows: usize) -> usize {
     row * BLOCKS / rows.max(1)
 }
 
+/// Whether a row is in a block and not next to another: errors there are alike on both sides.
+fn is_inside(row: usize, rows: usize, block: usize) -> bool {
+    let place = (row * BLOCKS) as f64 / rows.max(1) as f64 - block as f64;
+    (MARGIN..1.0 - MARGIN).contains(&place)
+}
+
 /// Whether a log has enough rows to be held out in part.
 pub(super) fn enough(rows: usize) -> bool {
     rows >= BLOCKS * FEWEST_ROWS
@@ -38,7 +48,7 @@ pub(super) fn enough(rows: usize) -> bool {
 /// The held-out residuals of the best choice among [`CHANGES`].
 pub(super) fn hold_out(unknowns: &Unknowns, joints: &Joints, rows: &[Row], used: &[bool]) -> Option<HeldOut> {
     let block = |k: usize| {
-        let of_block = move |(row, _): &(usize, &Row)| used[*row] && block_of(*row, rows.len()) == k;
+        let of_block = move |(row, _): &(usize, &Row)| used[*row] && is_inside(*row, rows.len(), k);
         Normal::of(unknowns, joints, rows.iter().enumerate().filter(of_block).map(|(_, row)| row))
     };
     let blocks: Vec<Normal> = (0..BLOCKS).map(block).collect();
@@ -55,19 +65,19 @@ pub(super) fn hold_out(unknowns: &Unknowns, joints: &Joints, rows: &[Row], used:
         let residuals: Vec<DVector<f64>> = rows.iter().enumerate().map(left).collect();
         Some((scores(&residuals, used), HeldOut { change, residuals, corrections }))
     });
-    nearest_as_good(tried.collect())
+    nearest_as_good(tried.collect(), joints.weights.len())
 }
 
 /// The choice that is nearest to the description among those that are as good as the best, to one standard error over the
 /// blocks (Breiman et al. 1984): what a log cannot tell stays as described.
-fn nearest_as_good(mut tried: Vec<(Vec<f64>, HeldOut)>) -> Option<HeldOut> {
+fn nearest_as_good(mut tried: Vec<(Vec<f64>, HeldOut)>, joints: usize) -> Option<HeldOut> {
     let mean = |scores: &[f64]| scores.iter().sum::<f64>() / scores.len() as f64;
     let best = tried.iter().map(|(scores, _)| scores).min_by(|a, b| mean(a).total_cmp(&mean(b)))?.clone();
     let as_good = |scores: &[f64]| {
         let worse: Vec<f64> = scores.iter().zip(&best).map(|(score, best)| score - best).collect();
         let by = mean(&worse);
         let variance = worse.iter().map(|x| (x - by).powi(2)).sum::<f64>() / (worse.len() - 1) as f64;
-        by <= (variance / worse.len() as f64).sqrt()
+        by <= f64::max((variance / worse.len() as f64).sqrt(), NO_MATTER * joints as f64)
     };
     let chosen = tried.iter().position(|(scores, _)| as_good(scores))?;
     Some(tried.swap_remove(chosen).1)

@@ -3,7 +3,7 @@
 use nalgebra::{DVector, Matrix3, Vector3};
 
 use super::pseudo_inertia::{Change, PseudoInertia, CHANGES};
-use crate::robot::inertial_parameters::{of_inertia, Parameters};
+use crate::robot::inertial_parameters::{Parameters, MOMENTS};
 use crate::robot::{LinkIndex, Robot};
 use crate::spatial::Pose;
 
@@ -14,18 +14,16 @@ pub(super) const COULOMB: usize = 1;
 pub(super) const VISCOUS: usize = 2;
 pub(super) const ARMATURE: usize = 3;
 
-/// Numbers of a payload: mass (kg), first moments in the link's frame (kg m), and the moment of inertia about its centre,
-/// taken to be the same about all axes (kg m^2).
-pub(super) const PAYLOAD: usize = 5;
+/// Numbers of a payload: its inertial parameters in the link's frame, all free, so that the misfit has one minimum.
+pub(super) const PAYLOAD: usize = PARAMETERS;
 const PARAMETERS: usize = 10;
 /// A torque may be late by so much: one standard deviation (s).
 const TORQUE_DELAY: f64 = 0.01;
 
-/// A payload may weigh this share of the robot, be this far from the link's origin (m) and have this radius of gyration
-/// (m): one standard deviation each, wide enough for any tool.
+/// A payload may weigh this share of the robot and be this far from the link's origin (m): one standard deviation each, wide
+/// enough for any tool.
 const PAYLOAD_SHARE: f64 = 0.2;
 const PAYLOAD_REACH: f64 = 0.3;
-const PAYLOAD_SIZE: f64 = 0.1;
 /// A lighter payload (share of the robot's mass) has no centre.
 const NO_PAYLOAD: f64 = 1e-6;
 
@@ -124,8 +122,9 @@ impl Unknowns {
         units.push(TORQUE_DELAY);
         if self.payload.is_some() {
             let mass = PAYLOAD_SHARE * self.robot_mass;
-            let (moment, spread) = (mass * PAYLOAD_REACH, mass * PAYLOAD_SIZE * PAYLOAD_SIZE);
-            units.extend([mass, moment, moment, moment, spread]);
+            let (moment, spread) = (mass * PAYLOAD_REACH, mass * PAYLOAD_REACH * PAYLOAD_REACH);
+            units.extend([mass, moment, moment, moment]);
+            units.extend([spread; 6]);
         }
         DVector::from_vec(units)
     }
@@ -136,7 +135,8 @@ impl Unknowns {
         floors.extend(self.term_floors.iter().flatten());
         floors.push(0.0);
         if self.payload.is_some() {
-            floors.extend([0.0, f64::NEG_INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY, 0.0]);
+            floors.push(0.0);
+            floors.extend([f64::NEG_INFINITY; PAYLOAD - 1]);
         }
         floors
     }
@@ -159,7 +159,7 @@ impl Unknowns {
     fn parameters(&self, z: &DVector<f64>) -> Vec<Parameters> {
         let mut all = self.without_payload(z);
         if let Some((held, numbers)) = self.held(z) {
-            let added = held.parameters(&numbers, self.robot_mass);
+            let added = held.parameters(&numbers);
             all[held.body].iter_mut().zip(&added).for_each(|(sum, part)| *sum += part);
         }
         all
@@ -199,18 +199,12 @@ impl Unknowns {
         let first_term = PARAMETERS * self.bodies.len();
         columns
             .extend((0..=TERMS * self.joints).map(|k| Column { first: first_term + k, values: vec![1.0] }));
-        if let Some((held, numbers)) = self.held(z) {
-            let scales = [self.robot_mass; PAYLOAD];
+        if let Some((held, _)) = self.held(z) {
             for k in 0..PAYLOAD {
-                let at = |step: f64| {
-                    let mut moved = numbers;
-                    moved[k] += step;
-                    held.parameters(&moved, self.robot_mass)
-                };
-                let step = 1e-6 * scales[k];
-                let (up, down) = (at(step), at(-step));
-                let values = up.iter().zip(&down).map(|(up, down)| (up - down) / (2.0 * step)).collect();
-                columns.push(Column { first: PARAMETERS * held.body, values });
+                let mut unit = [0.0; PAYLOAD];
+                unit[k] = 1.0;
+                columns
+                    .push(Column { first: PARAMETERS * held.body, values: held.parameters(&unit).to_vec() });
             }
         }
         columns
@@ -227,30 +221,65 @@ impl Unknowns {
 }
 
 impl Held {
-    fn parameters(&self, numbers: &[f64; PAYLOAD], robot_mass: f64) -> Parameters {
-        let payload = HeldPayload::of(numbers, robot_mass);
-        let inertia = Matrix3::from_diagonal_element(numbers[4]);
-        let mut parameters =
-            of_inertia(payload.mass, &self.placement.transform_point(&payload.com), &inertia);
-        // First moments stay linear where the mass is too small for a centre.
-        let moment = self.placement.rotation * Vector3::new(numbers[1], numbers[2], numbers[3])
-            + self.placement.translation * numbers[0];
-        parameters[0] = numbers[0];
-        parameters[1..4].copy_from_slice(moment.as_slice());
+    /// The payload's inertial parameters in the axes of the body.
+    fn parameters(&self, numbers: &Parameters) -> Parameters {
+        let Pose { rotation, translation: p } = &self.placement;
+        let mass = numbers[0];
+        let moment = rotation * Vector3::new(numbers[1], numbers[2], numbers[3]);
+        let inertia = rotation * moment_matrix(numbers) * rotation.transpose();
+        let parallel = |a: &Vector3<f64>, b: &Vector3<f64>| {
+            Matrix3::from_diagonal_element(2.0 * a.dot(b)) - a * b.transpose() - b * a.transpose()
+        };
+        let moved = inertia + parallel(p, &moment) + parallel(p, p) * (0.5 * mass);
+        let moment = moment + p * mass;
+        let mut parameters = [mass, moment.x, moment.y, moment.z, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        for (value, &(row, column)) in parameters[4..].iter_mut().zip(&MOMENTS) {
+            *value = moved[(row, column)];
+        }
         parameters
     }
 }
 
+/// The moments of inertia about the origin.
+fn moment_matrix(parameters: &Parameters) -> Matrix3<f64> {
+    let mut moments = Matrix3::zeros();
+    for (value, &(row, column)) in parameters[4..].iter().zip(&MOMENTS) {
+        moments[(row, column)] = *value;
+        moments[(column, row)] = *value;
+    }
+    moments
+}
+
 impl HeldPayload {
-    fn of(numbers: &[f64; PAYLOAD], robot_mass: f64) -> Self {
+    fn of(numbers: &Parameters, robot_mass: f64) -> Self {
         let mass = numbers[0];
-        let com = if mass > NO_PAYLOAD * robot_mass {
-            let com = Vector3::new(numbers[1], numbers[2], numbers[3]) / mass;
-            // Before the mass is known the quotient may be anything.
-            com * (1.0 / com.norm()).min(1.0)
-        } else {
-            Vector3::zeros()
-        };
-        HeldPayload { mass: mass.max(0.0), com, moment: numbers[4] }
+        if mass <= NO_PAYLOAD * robot_mass {
+            return HeldPayload { mass: 0.0, com: Vector3::zeros(), moment: 0.0 };
+        }
+        let com = Vector3::new(numbers[1], numbers[2], numbers[3]) / mass;
+        // The mean moment about the centre: half of the trace is the second moment of mass.
+        let moment = (moment_matrix(numbers).trace() - 2.0 * mass * com.norm_squared()) / 3.0;
+        HeldPayload { mass, com, moment: moment.max(0.0) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::inertial_parameters::of_inertia;
+
+    #[test]
+    fn a_payload_has_the_same_inertia_in_the_axes_of_the_body() {
+        let rotation = nalgebra::Rotation3::from_euler_angles(0.3, -0.8, 1.1).into_inner();
+        let placement = Pose { rotation, translation: Vector3::new(0.1, 0.2, -0.3) };
+        let (mass, com) = (1.5, Vector3::new(0.02, -0.03, 0.08));
+        let inertia = Matrix3::new(0.02, 0.001, 0.0, 0.001, 0.03, 0.002, 0.0, 0.002, 0.04);
+        let found = Held { body: 0, placement }.parameters(&of_inertia(mass, &com, &inertia));
+        let turned = rotation * inertia * rotation.transpose();
+        for (found, wanted) in found.iter().zip(of_inertia(mass, &placement.transform_point(&com), &turned)) {
+            assert!((found - wanted).abs() < 1e-12);
+        }
+        let held = HeldPayload::of(&of_inertia(mass, &com, &inertia), 20.0);
+        assert!((held.com - com).norm() < 1e-12 && (held.moment - 0.03).abs() < 1e-12);
     }
 }

@@ -2,7 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::dynamics::{MOMENTS, PARAMETERS};
+pub(crate) use super::dynamics::MOMENTS;
+use super::dynamics::PARAMETERS;
 use super::robot::{Body, Robot};
 
 /// Mass (kg), first moments (kg m) and the moments of inertia `xx, xy, yy, xz, yz, zz` about the body's origin (kg m^2), in
