@@ -5,6 +5,7 @@ mod common;
 
 use std::hint::black_box;
 
+use contactsense::calibration::Calibration;
 use contactsense::isolation::IsolatorOptions;
 use contactsense::monitor::{ContactMonitor, MonitorOptions};
 use contactsense::observer::MomentumObserver;
@@ -17,6 +18,14 @@ fn step(c: &mut Criterion) {
         let q = common::configuration(&robot, 0.4);
         let v = common::numbers(robot.nv(), 0.7);
         let tau = common::numbers(robot.nv(), 1.1);
+        let mut calibration = Calibration::of_description(&robot);
+        calibration.friction.coulomb.fill(0.5);
+        (calibration.velocity_delay, calibration.torque_delay) = (0.003, 0.001);
+        let mut calibrated =
+            MomentumObserver::calibrated(&robot, 1e-3, &[50.0], &calibration).expect("valid settings");
+        group.bench_function(format!("{name}, calibrated"), |b| {
+            b.iter(|| black_box(calibrated.update(&Sample::new(&q, &v, &tau)).expect("valid input"))[0])
+        });
         let mut observer = MomentumObserver::new(robot, 1e-3, &[50.0]).expect("valid settings");
         group.bench_function(name, |b| {
             b.iter(|| black_box(observer.update(&Sample::new(&q, &v, &tau)).expect("valid input"))[0])

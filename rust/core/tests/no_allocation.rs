@@ -5,6 +5,7 @@ use std::hint::black_box;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Mutex;
 
+use contactsense::calibration::Calibration;
 use contactsense::isolation::{ContactIsolator, IsolatorOptions};
 use contactsense::monitor::{ContactMonitor, MonitorOptions};
 use contactsense::observer::MomentumObserver;
@@ -95,6 +96,19 @@ fn a_tick_allocates_nothing() {
         let v = common::numbers(robot.nv(), 0.1);
         let still = vec![0.0; robot.nv()];
         let tau = common::numbers(robot.nv() - robot.unactuated(), 0.7);
+
+        let mut calibration = Calibration::of_description(&robot);
+        calibration.friction.coulomb.fill(0.5);
+        (calibration.velocity_delay, calibration.torque_delay) = (0.003, 0.001);
+        let mut calibrated =
+            MomentumObserver::calibrated(&robot, 1e-3, &[100.0], &calibration).expect("valid options");
+        let made = allocations(|| {
+            for _ in 0..100 {
+                let sample = Sample::new(&q, &v, &tau);
+                black_box(calibrated.update(&sample).expect("valid input"));
+            }
+        });
+        assert_eq!(made, 0, "calibrated observer of {}", robot.name());
 
         let mut observer = MomentumObserver::new(robot.clone(), 1e-3, &[100.0]).expect("valid options");
         let work = || {

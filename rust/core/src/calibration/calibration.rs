@@ -36,7 +36,7 @@ pub struct Calibration {
     pub coulomb_std: Vec<f64>,
     /// One standard deviation of each viscous friction (Nm s/rad; N s/m).
     pub viscous_std: Vec<f64>,
-    /// Rotor inertia, reflected through the gear (kg m^2; kg).
+    /// Rotor inertia, reflected through the gear (kg m^2; kg), by joint.
     pub armature: Vec<f64>,
     /// One standard deviation.
     pub armature_std: Vec<f64>,
@@ -146,7 +146,7 @@ impl Calibration {
             coulomb_std: zeros.clone(),
             viscous_std: zeros.clone(),
             armature: armature(robot),
-            armature_std: zeros.clone(),
+            armature_std: vec![0.0; robot.joint_names().len()],
             bodies: robot
                 .inertial_parameters()
                 .iter()
@@ -188,12 +188,10 @@ impl Calibration {
             ("torque_bias_std", &self.torque_bias_std, positive(&self.torque_bias_std)),
             ("coulomb_std", &self.coulomb_std, positive(&self.coulomb_std)),
             ("viscous_std", &self.viscous_std, positive(&self.viscous_std)),
-            ("armature_std", &self.armature_std, positive(&self.armature_std)),
             ("residual", &self.residual, positive(&self.residual)),
             ("torque_scale", &self.torque_scale, !self.torque_scale.contains(&0.0)),
             ("friction.coulomb", &self.friction.coulomb, positive(&self.friction.coulomb)),
             ("friction.viscous", &self.friction.viscous, positive(&self.friction.viscous)),
-            ("armature", &self.armature, positive(&self.armature)),
         ];
         for (name, values, is_right) in columns {
             if values.len() != robot.nv() || !is_right || !values.iter().all(|x| x.abs() < LARGEST) {
@@ -209,6 +207,13 @@ impl Calibration {
         if self.bodies.len() != robot.body_count() - 1 {
             let text = format!("bodies: must be {}, one a joint", robot.body_count() - 1);
             return Err(Error::input("calibration", text));
+        }
+        for (name, values) in [("armature", &self.armature), ("armature_std", &self.armature_std)] {
+            let joints = robot.joint_names().len();
+            if values.len() != joints || !values.iter().all(|x| (0.0..LARGEST).contains(x)) {
+                let text = format!("{name}: must be {joints} finite numbers, none negative");
+                return Err(Error::input("calibration", text));
+            }
         }
         for body in &self.bodies {
             let numbers = body.com.iter().chain(&body.inertia).chain([&body.mass]);
