@@ -1101,7 +1101,7 @@ class Finding:
         """Share of the variance, unexplained until then, that it explains, from 0 to 1."""
     @property
     def severity(self) -> Literal["minor", "major"]:
-        """ "major" where it spoils the detection of contacts, otherwise "minor"."""
+        """How much it matters: "major" where it spoils the detection of contacts, otherwise "minor"."""
 
 @final
 class ContactIsolator:

@@ -95,7 +95,7 @@ impl PyFinding {
         self.0.evidence
     }
 
-    /// "major" where it spoils the detection of contacts, otherwise "minor".
+    /// How much it matters: "major" where it spoils the detection of contacts, otherwise "minor".
     #[getter]
     fn severity(&self) -> &'static str {
         self.0.severity.name()
