@@ -15,7 +15,7 @@ const SECONDS: [f64; 2] = [1.0, 600.0];
 /// Most rows of a motion.
 const MOST_ROWS: f64 = 2e6;
 /// Random moves of which the best one is improved, by as many attempts; the first number where there are many parameters.
-const DRAWS: [u64; 2] = [3, 48];
+const DRAWS: [u64; 2] = [3, 96];
 /// Number of parameters up to which all are drawn (an arm of seven joints has 98); beyond, the work stays the same.
 const FEW_PARAMETERS: f64 = 100.0;
 /// How much of a move is tried where all of it is not clear.
