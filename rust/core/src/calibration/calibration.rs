@@ -12,6 +12,17 @@ use crate::spatial::Pose;
 use crate::torque::NoiseModel;
 
 /// What contact-free motion teaches of one robot; vectors by velocity variable.
+///
+/// ```
+/// use contactsense::calibration::Calibration;
+/// use contactsense::robot::Robot;
+///
+/// let robot = Robot::example_arm();
+/// let mut calibration = Calibration::of_description(&robot);
+/// calibration.bodies[6].mass += 0.5;
+/// assert!((calibration.corrected(&robot)?.mass() - robot.mass() - 0.5).abs() < 1e-12);
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -65,6 +76,14 @@ pub struct Calibration {
 }
 
 /// The inertia of all that moves with one joint, in the frame of the link that the joint moves.
+///
+/// ```
+/// use contactsense::calibration::{BodyInertia, Calibration};
+///
+/// let calibration = Calibration::of_description(&contactsense::robot::Robot::example_arm());
+/// let BodyInertia { link, mass, .. } = &calibration.bodies[0];
+/// assert!(!link.is_empty() && *mass > 0.0);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -80,6 +99,24 @@ pub struct BodyInertia {
 }
 
 /// A payload at a link.
+///
+/// ```
+/// use contactsense::calibration::{Calibration, Payload};
+/// use contactsense::robot::Robot;
+///
+/// let robot = Robot::example_arm();
+/// let payload = Payload {
+///     link: "link_7".into(),
+///     mass: 1.0,
+///     mass_std: 0.02,
+///     com: [0.0, 0.0, 0.1],
+///     com_std: [0.005; 3],
+///     moment: 1e-3,
+/// };
+/// let calibration = Calibration { payload: Some(payload), ..Calibration::of_description(&robot) };
+/// assert!((calibration.corrected(&robot)?.mass() - robot.mass() - 1.0).abs() < 1e-12);
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -99,6 +136,13 @@ pub struct Payload {
 }
 
 /// How to calibrate.
+///
+/// ```
+/// use contactsense::calibration::CalibrationOptions;
+///
+/// let options = CalibrationOptions { false_alarms_per_hour: 0.1, ..CalibrationOptions::default() };
+/// assert!(options.payload_link.is_none());
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct CalibrationOptions {
     /// The rate of false alarms that thresholds are set for (1/h).

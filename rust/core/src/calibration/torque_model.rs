@@ -3,6 +3,14 @@
 use super::lead::Lead;
 
 /// Friction of the joints, by velocity variable.
+///
+/// ```
+/// use contactsense::calibration::{Friction, Reversal};
+///
+/// let reversal = vec![Reversal::Velocity(0.01)];
+/// let friction = Friction { coulomb: vec![0.5], viscous: vec![0.1], reversal };
+/// assert_eq!(friction.reversal[0].width(), 0.01);
+/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -16,6 +24,12 @@ pub struct Friction {
 }
 
 /// How Coulomb friction goes from one direction to the other.
+///
+/// ```
+/// use contactsense::calibration::Reversal;
+///
+/// assert_eq!(Reversal::Displacement(0.003).width(), 0.003);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]

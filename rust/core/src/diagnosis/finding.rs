@@ -3,6 +3,12 @@
 use std::fmt;
 
 /// What is wrong.
+///
+/// ```
+/// use contactsense::diagnosis::FaultCode;
+///
+/// assert_eq!(FaultCode::GravityDirection.name(), "gravity_direction");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FaultCode {
@@ -65,6 +71,12 @@ impl FaultCode {
 }
 
 /// How much a fault matters.
+///
+/// ```
+/// use contactsense::diagnosis::Severity;
+///
+/// assert!(Severity::Major > Severity::Minor);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Severity {
@@ -85,6 +97,13 @@ impl Severity {
 }
 
 /// One thing that is wrong with a robot's model or measurements.
+///
+/// ```
+/// use contactsense::diagnosis::{Finding, Severity};
+///
+/// let grave = |findings: &[Finding]| findings.iter().any(|finding| finding.severity == Severity::Major);
+/// assert!(!grave(&[]));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Finding {

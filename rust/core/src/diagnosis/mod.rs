@@ -38,6 +38,15 @@ use motion::Motion;
 const LEAST_ROWS: usize = 30;
 
 /// What is diagnosed: rows without contact, flat arrays of `n` rows each.
+///
+/// ```
+/// use contactsense::diagnosis::{diagnose, Recording};
+///
+/// let rows = vec![0.0; 7];
+/// let recording = Recording { time: None, q: &rows, v: &rows, tau: &rows, sensors: &[], wrenches: &[] };
+/// // One row says nothing.
+/// assert!(diagnose(&contactsense::robot::Robot::example_arm(), &recording).is_err());
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Recording<'a> {
     /// `(n,)`, increasing (s); without it the rows are taken at equal steps.

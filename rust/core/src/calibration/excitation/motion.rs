@@ -110,6 +110,15 @@ impl Move {
 }
 
 /// A planned motion, sampled at equal distances of time: rows one after another.
+///
+/// ```
+/// use contactsense::calibration::{exciting_motion, Excitation, Motion};
+///
+/// let robot = contactsense::robot::Robot::example_arm();
+/// let Motion { time, q, .. } = exciting_motion(&robot, &Excitation::new(3.0))?;
+/// assert_eq!(q.len(), 7 * time.len());
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Motion {
