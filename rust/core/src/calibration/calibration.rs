@@ -6,7 +6,7 @@ use super::fingerprint::fingerprint;
 use super::torque_model::{Friction, TorqueModel, REVERSALS};
 use crate::error::{Error, Result};
 use crate::robot::check::principal_moments;
-use crate::robot::inertial_parameters::{of_inertia, to_inertia, Parameters};
+use crate::robot::inertial_parameters::{moment_matrix, of_inertia, to_inertia, Parameters};
 use crate::robot::{LinkIndex, Robot, LARGEST};
 use crate::spatial::Pose;
 use crate::torque::NoiseModel;
@@ -261,7 +261,7 @@ impl Calibration {
         }
         for body in &self.bodies {
             let numbers = body.com.iter().chain(&body.inertia).chain([&body.mass]);
-            let moments = principal_moments(&inertia_matrix(&body.inertia));
+            let moments = principal_moments(&moment_matrix(&body.inertia));
             let is_body = numbers.clone().all(|x| x.abs() < LARGEST) && body.mass >= 0.0;
             if !is_body || moments.is_ok_and(|moments| moments[0] < -NEGATIVE * moments[2].abs()) {
                 let text = format!("bodies: mass and inertia of '{}' must be those of a body", body.link);
@@ -292,7 +292,7 @@ impl Calibration {
         let bodies = self.bodies.iter().enumerate().map(|(index, body)| {
             let placement = moved_link(robot, index).map_or_else(Pose::identity, |(_, placement)| placement);
             let com = placement.transform_point(&Vector3::from(body.com));
-            let inertia = inertia_matrix(&body.inertia);
+            let inertia = moment_matrix(&body.inertia);
             of_inertia(body.mass, &com, &(placement.rotation * inertia * placement.rotation.transpose()))
         });
         let corrected = robot.with_inertial_parameters(&bodies.collect::<Vec<_>>(), &self.armature);
@@ -314,13 +314,6 @@ impl Calibration {
 
 /// Rounding, and published inertias that are a little off, make moments this negative (share of the largest).
 const NEGATIVE: f64 = 0.5;
-
-/// From the moments `xx, xy, yy, xz, yz, zz`.
-fn inertia_matrix(moments: &[f64; 6]) -> Matrix3<f64> {
-    let mut parameters = [0.0; 10];
-    parameters[4..].copy_from_slice(moments);
-    to_inertia(&parameters).2
-}
 
 /// A longer delay is another fault (s).
 const LONGEST_DELAY: f64 = 1.0;

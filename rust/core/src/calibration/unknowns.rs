@@ -3,7 +3,7 @@
 use nalgebra::{DVector, Matrix3, Vector3};
 
 use super::pseudo_inertia::{Change, PseudoInertia, CHANGES};
-use crate::robot::inertial_parameters::{Parameters, MOMENTS};
+use crate::robot::inertial_parameters::{moment_matrix, Parameters, MOMENTS};
 use crate::robot::{LinkIndex, Robot};
 use crate::spatial::Pose;
 
@@ -226,7 +226,7 @@ impl Held {
         let Pose { rotation, translation: p } = &self.placement;
         let mass = numbers[0];
         let moment = rotation * Vector3::new(numbers[1], numbers[2], numbers[3]);
-        let inertia = rotation * moment_matrix(numbers) * rotation.transpose();
+        let inertia = rotation * moment_matrix(&numbers[4..]) * rotation.transpose();
         let parallel = |a: &Vector3<f64>, b: &Vector3<f64>| {
             Matrix3::from_diagonal_element(2.0 * a.dot(b)) - a * b.transpose() - b * a.transpose()
         };
@@ -240,16 +240,6 @@ impl Held {
     }
 }
 
-/// The moments of inertia about the origin.
-fn moment_matrix(parameters: &Parameters) -> Matrix3<f64> {
-    let mut moments = Matrix3::zeros();
-    for (value, &(row, column)) in parameters[4..].iter().zip(&MOMENTS) {
-        moments[(row, column)] = *value;
-        moments[(column, row)] = *value;
-    }
-    moments
-}
-
 impl HeldPayload {
     fn of(numbers: &Parameters, robot_mass: f64) -> Self {
         let mass = numbers[0];
@@ -258,7 +248,7 @@ impl HeldPayload {
         }
         let com = Vector3::new(numbers[1], numbers[2], numbers[3]) / mass;
         // The mean moment about the centre: half of the trace is the second moment of mass.
-        let moment = (moment_matrix(numbers).trace() - 2.0 * mass * com.norm_squared()) / 3.0;
+        let moment = (moment_matrix(&numbers[4..]).trace() - 2.0 * mass * com.norm_squared()) / 3.0;
         HeldPayload { mass, com, moment: moment.max(0.0) }
     }
 }

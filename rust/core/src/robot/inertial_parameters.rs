@@ -30,16 +30,22 @@ pub(crate) fn of_inertia(mass: f64, com: &Vector3<f64>, inertia: &Matrix3<f64>) 
 pub(crate) fn to_inertia(parameters: &Parameters) -> (f64, Vector3<f64>, Matrix3<f64>) {
     let mass = parameters[0];
     let moment = Vector3::new(parameters[1], parameters[2], parameters[3]);
-    let mut inertia = Matrix3::zeros();
-    for (value, &(row, column)) in parameters[4..].iter().zip(&MOMENTS) {
-        inertia[(row, column)] = *value;
-        inertia[(column, row)] = *value;
-    }
+    let inertia = moment_matrix(&parameters[4..]);
     if mass == 0.0 {
         return (0.0, Vector3::zeros(), inertia);
     }
     let com = moment / mass;
     (mass, com, inertia - spread(&com) * mass)
+}
+
+/// The matrix of the moments `xx, xy, yy, xz, yz, zz`.
+pub(crate) fn moment_matrix(moments: &[f64]) -> Matrix3<f64> {
+    let mut matrix = Matrix3::zeros();
+    for (value, &(row, column)) in moments.iter().zip(&MOMENTS) {
+        matrix[(row, column)] = *value;
+        matrix[(column, row)] = *value;
+    }
+    matrix
 }
 
 /// The inertia of a unit mass at a place, about the origin.

@@ -8,7 +8,6 @@ pub(crate) mod description;
 mod dynamics;
 mod example;
 pub(crate) mod ids;
-#[allow(dead_code)] // until calibration writes them
 pub(crate) mod inertial_parameters;
 pub(crate) mod integrate;
 pub(crate) mod jacobian;
