@@ -717,6 +717,13 @@ class Calibration:
         Root mean square over blocks of the log that were held out of the fit, behind a low-pass of 8/s (slower where the log has few rows a second).
         """
     @property
+    def tails(self) -> NDArray[np.float64]:
+        """How large the errors made the statistic of detection on those blocks, `(k, 3)`; a read-only copy.
+
+        One row a gain of the observers: the gain [1/s], the statistic that was exceeded 0.8 times a second, and by how much
+        more it is at a rate that is a factor of e lower.
+        """
+    @property
     def false_alarms_per_hour(self) -> float:
         """The rate of false alarms that thresholds are set for [1/h]."""
     @property
@@ -919,6 +926,8 @@ class NoiseModel:
         relative: Share of the contact's own torque, scalar or `(nv,)`; a tenth of it also of the largest torque.
         model: Slow errors left over (bias, friction, masses), scalar or `(nv,)` [Nm; N for sliding joints].
         model_time: Time over which these change, scalar or `(nv,)` [s].
+        friction: Errors of friction while a joint starts, stops or turns round, scalar or `(nv,)` [Nm; N for sliding joints].
+        bias: What the bias differs by from one start to the next, scalar or `(nv,)` [Nm; N for sliding joints].
 
     Raises:
         InputError: Names the argument.
@@ -926,7 +935,7 @@ class NoiseModel:
     Example:
         >>> import contactsense as cs
         >>> cs.NoiseModel(model=0.2)
-        NoiseModel(torque=0.05, velocity=0.0, relative=0.03, model=0.2, model_time=1.0)
+        NoiseModel(torque=0.05, velocity=0.0, relative=0.03, model=0.2, model_time=1.0, friction=0.0, bias=0.0)
     """
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
@@ -938,6 +947,8 @@ class NoiseModel:
         relative: ArrayLike = 0.03,
         model: ArrayLike = 0.1,
         model_time: ArrayLike = 1.0,
+        friction: ArrayLike = 0.0,
+        bias: ArrayLike = 0.0,
     ) -> Self: ...
     @property
     def torque(self) -> float | NDArray[np.float64]:
@@ -951,6 +962,14 @@ class NoiseModel:
     @property
     def model(self) -> float | NDArray[np.float64]:
         """Slow errors left over [Nm; N for sliding joints]: a number or `(nv,)`; a read-only copy."""
+    @property
+    def friction(self) -> float | NDArray[np.float64]:
+        """Errors of friction while a joint starts, stops or turns round [Nm; N for sliding joints]: a number or `(nv,)`; a
+        read-only copy.
+        """
+    @property
+    def bias(self) -> float | NDArray[np.float64]:
+        """What the bias differs by from one start to the next [Nm; N for sliding joints]: a number or `(nv,)`; a read-only copy."""
     @property
     def model_time(self) -> float | NDArray[np.float64]:
         """Time over which slow errors change [s]: a number or `(nv,)`; a read-only copy."""
@@ -1516,6 +1535,12 @@ class ContactReport:
     @property
     def onset(self) -> bool:
         """Whether the contact began with this tick."""
+    @property
+    def significance(self) -> float | None:
+        """How unlikely the torques are without contact [standard deviations], or None where each joint has a threshold.
+
+        A Gaussian number would be so many standard deviations off as rarely; the largest over the gains of all observers.
+        """
     @property
     def remainder_learned(self) -> bool:
         """Whether a torque that stood still became the bias in this tick, which ended the contact.

@@ -9,7 +9,7 @@ from typing import Literal
 Rule = Literal["any", "not negative", "positive", "not zero"]
 
 # Files of another format are refused: an entry may mean something else there.
-FORMAT = 1
+FORMAT = 2
 
 
 @dataclass(frozen=True)
@@ -58,6 +58,8 @@ NOISE_FIELDS = (
     Field("relative", "share of the contact's own torque", ("noise", "relative"), "not negative"),
     Field("model", "Nm (N), slow errors left over", ("noise", "model"), "not negative"),
     Field("model_time", "s, time over which these change", ("noise", "model_time"), "not negative"),
+    Field("friction", "Nm (N), of friction at starts and stops", ("noise", "friction"), "not negative"),
+    Field("bias", "Nm (N), from one start to the next", ("noise", "bias"), "not negative"),
 )
 ROBOT_FIELDS = (
     Field("inertial_change", "share by which inertias may differ", ("inertial_change",), "not negative"),

@@ -51,6 +51,10 @@ def content_of(file: str, text: str) -> dict[str, Any]:
     content["bodies"] = _bodies(entries.inner("links"), joints)
     content["payload"] = _payload(entries)
     content["sensor_offsets"] = _offsets(entries.inner("sensor_offsets"))
+    content["tails"] = [
+        dict(zip(("gain", "level", "scale"), entries.listed(where, item, 3, "1/s, 1, 1"), strict=True))
+        for where, item in entries.items("tails", "triples of gain [1/s], level and scale")
+    ]
     content["contacts"] = [
         entries.listed(where, item, 2, "s")
         for where, item in entries.items("contacts", "pairs of times [s], from when to when")

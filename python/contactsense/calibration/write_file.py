@@ -114,6 +114,9 @@ def _rest(content: dict[str, Any]) -> Iterator[str]:
     offsets = content["sensor_offsets"]
     yield f"sensor_offsets:{'' if offsets else ' {}'}  # N and Nm, what a sensor reads without load"
     yield from (f"  {text(name)}: {numbers(offset)}" for name, offset in offsets)
+    tails = content["tails"]
+    yield f"tails:{'' if tails else ' []'}  # of detection's statistic: gain (1/s), level, scale"
+    yield from (f"  - {numbers([tail['gain'], tail['level'], tail['scale']])}" for tail in tails)
     contacts = content["contacts"]
     yield f"contacts:{'' if contacts else ' []'}  # s, from when to when contacts were left out of the log"
     yield from (f"  - {numbers(contact)}" for contact in contacts)

@@ -71,6 +71,7 @@ const ATTRIBUTES: &[&str] = &[
     "sensor_offsets",
     "noise",
     "residual",
+    "tails",
     "false_alarms_per_hour",
     "contacts",
     "notes",
@@ -216,6 +217,16 @@ impl PyCalibration {
     #[getter]
     fn residual<'py>(&self, py: Python<'py>) -> Array<'py> {
         numbers(py, &self.0.residual)
+    }
+
+    /// How large the errors made the statistic of detection on those blocks, `(k, 3)`; a read-only copy.
+    ///
+    /// One row a gain of the observers: the gain [1/s], the statistic that was exceeded 0.8 times a second, and by how much
+    /// more it is at a rate that is a factor of e lower.
+    #[getter]
+    fn tails<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let rows = self.0.tails.iter().map(|tail| [tail.gain, tail.level, tail.scale]);
+        Ok(read_only(from_rows(py, rows)?))
     }
 
     /// The rate of false alarms that thresholds are set for [1/h].

@@ -24,6 +24,8 @@ use crate::robot::PyRobot;
 ///     relative: Share of the contact's own torque, scalar or `(nv,)`; a tenth of it also of the largest torque.
 ///     model: Slow errors left over (bias, friction, masses), scalar or `(nv,)` [Nm; N for sliding joints].
 ///     model_time: Time over which these change, scalar or `(nv,)` [s].
+///     friction: Errors of friction while a joint starts, stops or turns round, scalar or `(nv,)` [Nm; N for sliding joints].
+///     bias: What the bias differs by from one start to the next, scalar or `(nv,)` [Nm; N for sliding joints].
 ///
 /// Raises:
 ///     InputError: Names the argument.
@@ -31,7 +33,7 @@ use crate::robot::PyRobot;
 /// Example:
 ///     >>> import contactsense as cs
 ///     >>> cs.NoiseModel(model=0.2)
-///     NoiseModel(torque=0.05, velocity=0.0, relative=0.03, model=0.2, model_time=1.0)
+///     NoiseModel(torque=0.05, velocity=0.0, relative=0.03, model=0.2, model_time=1.0, friction=0.0, bias=0.0)
 #[pyclass(frozen, eq, skip_from_py_object, name = "NoiseModel", module = "contactsense")]
 #[derive(PartialEq, Clone)]
 pub struct PyNoiseModel(pub NoiseModel);
@@ -47,8 +49,9 @@ pub fn values<'py>(py: Python<'py>, given: &[f64]) -> PyResult<Bound<'py, PyAny>
 #[pymethods]
 impl PyNoiseModel {
     #[new]
-    #[pyo3(signature = (*, torque=None, velocity=None, relative=None, model=None, model_time=None),
-           text_signature = "(*, torque=0.05, velocity=0.0, relative=0.03, model=0.1, model_time=1.0)")]
+    #[pyo3(signature = (*, torque=None, velocity=None, relative=None, model=None, model_time=None,
+                        friction=None, bias=None),
+           text_signature = "(*, torque=0.05, velocity=0.0, relative=0.03, model=0.1, model_time=1.0, friction=0.0, bias=0.0)")]
     fn new(
         py: Python<'_>,
         torque: Option<&Bound<'_, PyAny>>,
@@ -56,6 +59,8 @@ impl PyNoiseModel {
         relative: Option<&Bound<'_, PyAny>>,
         model: Option<&Bound<'_, PyAny>>,
         model_time: Option<&Bound<'_, PyAny>>,
+        friction: Option<&Bound<'_, PyAny>>,
+        bias: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let mut noise = NoiseModel::default();
         for (name, object, values) in [
@@ -64,6 +69,8 @@ impl PyNoiseModel {
             ("relative", relative, &mut noise.relative),
             ("model", model, &mut noise.model),
             ("model_time", model_time, &mut noise.model_time),
+            ("friction", friction, &mut noise.friction),
+            ("bias", bias, &mut noise.bias),
         ] {
             if let Some(object) = object {
                 *values = scalar_or_vector(name, object)?;
@@ -103,12 +110,25 @@ impl PyNoiseModel {
         values(py, &self.0.model_time)
     }
 
+    /// Errors of friction while a joint starts, stops or turns round [Nm; N for sliding joints]: a number or `(nv,)`; a
+    /// read-only copy.
+    #[getter]
+    fn friction<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        values(py, &self.0.friction)
+    }
+
+    /// What the bias differs by from one start to the next [Nm; N for sliding joints]: a number or `(nv,)`; a read-only copy.
+    #[getter]
+    fn bias<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        values(py, &self.0.bias)
+    }
+
     /// All attributes by name.
     ///
     /// Returns:
     ///     Plain Python values: numbers, and lists in place of arrays.
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        plain_dict(slf.as_any(), &["torque", "velocity", "relative", "model", "model_time"])
+        plain_dict(slf.as_any(), &["torque", "velocity", "relative", "model", "model_time", "friction", "bias"])
     }
 
     /// Covariance of the external torque of the untouched robot behind an observer.
@@ -177,12 +197,13 @@ impl PyNoiseModel {
             [value] => format!("{value:?}"),
             _ => format!("{values:?}"),
         };
-        let NoiseModel { torque, velocity, relative, model, model_time } = &self.0;
+        let NoiseModel { torque, velocity, relative, model, model_time, friction, bias } = &self.0;
         let [torque, velocity, relative] = [torque, velocity, relative].map(|x| shown(x));
         let [model, model_time] = [model, model_time].map(|x| shown(x));
+        let [friction, bias] = [friction, bias].map(|x| shown(x));
         format!(
             "NoiseModel(torque={torque}, velocity={velocity}, relative={relative}, model={model}, \
-             model_time={model_time})"
+             model_time={model_time}, friction={friction}, bias={bias})"
         )
     }
 }

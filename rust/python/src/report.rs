@@ -13,10 +13,11 @@ use crate::once::Once;
 use crate::pickle::{plain_dict, reduced, Reduced};
 use crate::returned::{numbers, wrench_rows};
 
-const ATTRIBUTES: [&str; 13] = [
+const ATTRIBUTES: [&str; 14] = [
     "time",
     "collision",
     "onset",
+    "significance",
     "remainder_learned",
     "links",
     "external_torque",
@@ -84,6 +85,14 @@ impl PyContactReport {
     #[getter]
     fn onset(&self) -> bool {
         self.report.onset
+    }
+
+    /// How unlikely the torques are without contact [standard deviations], or None where each joint has a threshold.
+    ///
+    /// A Gaussian number would be so many standard deviations off as rarely; the largest over the gains of all observers.
+    #[getter]
+    fn significance(&self) -> Option<f64> {
+        self.report.significance
     }
 
     /// Whether a torque that stood still became the bias in this tick, which ended the contact.

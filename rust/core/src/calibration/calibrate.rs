@@ -13,12 +13,13 @@ use super::log::Log;
 use super::noise::{estimate, Judged};
 use super::normal::{own_terms, Joints};
 use super::notes::{notes, JointFacts};
+use super::rest_errors::rest_errors;
 use super::rows::{rows, Filter, Row, Term};
 use super::smooth::smooth_velocity;
 use super::solve::Solution;
 use super::torque_model::{Friction, TorqueModel, REVERSALS};
 use super::unknowns::{Unknowns, ARMATURE, BIAS, COULOMB, TERMS, VISCOUS};
-use super::{Calibration, CalibrationOptions, Payload};
+use super::{Calibration, CalibrationOptions, Payload, Tail};
 use crate::error::{Error, Result};
 use crate::robot::Robot;
 use crate::torque::NoiseModel;
@@ -140,6 +141,7 @@ impl Fit {
         let step_of = |rows: [usize; 2]| rows.map(|row| log.time[self.rows[row].index]);
         let contacts: Vec<[f64; 2]> = stretches(&self.used).into_iter().map(step_of).collect();
         let without_payload = unknowns.without_payload(z);
+        let (noise, tails) = self.noise(robot, log, step)?;
         Ok(Calibration {
             torque_bias: term(BIAS),
             torque_bias_std: deviation(BIAS),
@@ -157,7 +159,8 @@ impl Fit {
             inertial_change: self.held_out.change,
             velocity_delay: self.velocity_delay,
             torque_delay: z[unknowns.torque_delay()],
-            noise: self.noise(robot, log, step)?,
+            noise,
+            tails,
             residual: (0..nv).map(|j| mean_square(&self.held_out.residuals, &self.used, j).sqrt()).collect(),
             false_alarms_per_hour: options.false_alarms_per_hour,
             notes: self.notes(robot, log, &contacts),
@@ -211,7 +214,7 @@ impl Fit {
     }
 
     /// The noise, from blocks that were not fitted.
-    fn noise(&self, robot: &Robot, log: &Log<'_>, step: f64) -> Result<NoiseModel> {
+    fn noise(&self, robot: &Robot, log: &Log<'_>, step: f64) -> Result<(NoiseModel, Vec<Tail>)> {
         let mut skipped = vec![false; log.len()];
         for [first, last] in stretches(&self.used) {
             skipped[self.rows[first].index..=self.rows[last].index].fill(true);
@@ -223,7 +226,9 @@ impl Fit {
             rows: self.log_rows(block, corrections.len(), log.len()),
         };
         let parts: Vec<Judged> = corrections.iter().enumerate().map(part).collect();
-        estimate(robot, log, &parts, &skipped, step)
+        let noise = estimate(robot, log, &parts, &skipped, step)?;
+        let friction = self.friction(&self.unknowns.correction(&self.solution.z));
+        rest_errors(robot, log, &parts, &skipped, step, &friction.coulomb, noise)
     }
 
     /// The rows of the log that belong to a block of the fit.

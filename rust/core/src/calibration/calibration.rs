@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::fingerprint::fingerprint;
+use super::Tail;
 use super::torque_model::{Friction, TorqueModel, REVERSALS};
 use crate::error::{Error, Result};
 use crate::robot::check::principal_moments;
@@ -67,6 +68,8 @@ pub struct Calibration {
     pub noise: NoiseModel,
     /// What is left of the low-passed torque, on blocks of the log that were not fitted (Nm; N).
     pub residual: Vec<f64>,
+    /// How large the errors made the statistic of detection on those blocks, by gain of the observer.
+    pub tails: Vec<Tail>,
     /// The rate of false alarms that thresholds are set for (1/h).
     pub false_alarms_per_hour: f64,
     /// From when to when contacts were found in the log and left out (s).
@@ -204,6 +207,7 @@ impl Calibration {
             sensor_offsets: vec![],
             noise: NoiseModel::default(),
             residual: zeros,
+            tails: vec![],
             false_alarms_per_hour: 1.0,
             contacts: vec![],
             notes: vec![],
@@ -270,6 +274,13 @@ impl Calibration {
         }
         if self.payload.as_ref().is_some_and(|payload| !(payload.mass >= 0.0 && payload.moment >= 0.0)) {
             return Err(Error::input("calibration", "payload: mass and moment must not be negative"));
+        }
+        for Tail { gain, level, scale } in &self.tails {
+            let is_right = [gain, level, scale].into_iter().all(|x| (0.0..LARGEST).contains(x));
+            if !is_right || *gain == 0.0 {
+                let text = "tails: gain must be positive, level and scale not negative, all finite";
+                return Err(Error::input("calibration", text));
+            }
         }
         if !(self.false_alarms_per_hour > 0.0 && self.false_alarms_per_hour.is_finite()) {
             return Err(Error::input("calibration", "false_alarms_per_hour: must be positive"));

@@ -182,6 +182,7 @@ fn split(spread: &Spread, torque: Vec<f64>, velocity: &[[f64; 2]], step: f64) ->
         relative: vec![RELATIVE; nv],
         model: roots(parts.model).into_iter().map(|x| x.max(SMALLEST)).collect(),
         model_time: times,
+        ..NoiseModel::default()
     }
 }
 

@@ -69,10 +69,11 @@ impl Detector {
         self.sensors.any_over(self.wrench_size.iter().copied())
     }
 
-    /// The rest of the tick of `dt` [s] with the external torque `(nv,)`, finite.
-    pub fn update(&mut self, external_torque: &[f64], dt: f64) {
+    /// The rest of the tick of `dt` [s] with the joints' signals `(nv,)`, finite: external torques, or what else the
+    /// thresholds are of.
+    pub fn update(&mut self, signals: &[f64], dt: f64) {
         let before = self.collision;
-        let on_joints = self.joints.update(external_torque, dt);
+        let on_joints = self.joints.update(signals, dt);
         let on_sensors = self.sensors.update(&self.wrench_size, dt);
         self.collision = on_joints || on_sensors;
         self.onset = self.collision && !before;
@@ -113,20 +114,18 @@ impl Detector {
         &self.links
     }
 
-    /// Other thresholds, as checked by [`super::check_threshold`] and [`check_wrench_threshold`]; what is on stays on for
-    /// its time.
-    pub fn set_thresholds(&mut self, threshold: Vec<f64>, wrench_threshold: Vec<Vector6<f64>>) {
+    /// Other thresholds of the joints, checked; what is on stays on for its time.
+    pub fn set_threshold(&mut self, threshold: Vec<f64>) {
         self.joints.set_threshold(threshold);
-        self.wrench_threshold = wrench_threshold;
+    }
+
+    /// Other thresholds of the sensors, as checked by [`check_wrench_threshold`].
+    pub fn set_wrench_threshold(&mut self, threshold: Vec<Vector6<f64>>) {
+        self.wrench_threshold = threshold;
     }
 
     /// The thresholds on each sensor's wrench (N, Nm).
     pub fn wrench_threshold(&self) -> &[Vector6<f64>] {
         &self.wrench_threshold
-    }
-
-    /// The thresholds `(nv,)`.
-    pub fn threshold(&self) -> &[f64] {
-        self.joints.threshold()
     }
 }

@@ -66,11 +66,6 @@ impl Gate {
         self.threshold = threshold;
     }
 
-    /// The thresholds.
-    pub fn threshold(&self) -> &[f64] {
-        &self.threshold
-    }
-
     /// Turns all signals off.
     pub fn reset(&mut self) {
         self.remaining.fill(-1.0);

@@ -1,10 +1,20 @@
 //! Detection: is there a contact, and behind which joints (Vorndamme 2017, eq. 21); when it has ended.
 
+mod contact_test;
 mod detector;
+mod false_alarms;
+mod friction_errors;
 mod gate;
 mod release;
 mod signal_tree;
+mod slow_errors;
+mod velocity_covariance;
+mod whitening;
 
+pub(crate) use contact_test::{ContactTest, Level, FOLLOW_TIME, GAINS, LARGEST_STEP};
 pub(crate) use detector::Detector;
+pub use false_alarms::Tail;
+pub(crate) use false_alarms::{gaussian_level, PEAK_TIME};
+pub(crate) use friction_errors::{FrictionErrors, SLOW};
 pub(crate) use gate::{check_threshold, check_wrench_threshold, is_over, Gate};
 pub(crate) use release::{ReleaseDetector, ReleaseRule};

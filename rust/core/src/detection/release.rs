@@ -11,6 +11,10 @@ const STILL_TIME: f64 = 0.1;
 const FEWEST_SAMPLES: u64 = 5;
 /// Still: within this part of the threshold of its mean so far, every joint.
 const STILL_BAND: f64 = 0.5;
+/// A torque that does not stand still, of an arm that moves on, has ended when it stayed a remainder for this long (s),
+const LOW_TIME: f64 = 0.3;
+/// and fell to this share of its greatest norm.
+const LOW_SHARE: f64 = 0.3;
 /// A joint counts as loaded by at least this share of the whole contact's greatest torque: gears and sensors also answer
 /// to load across their axis. (On a real Franka arm touches of 14 Nm leave up to 0.65 Nm in joint 5, which itself bore
 /// less than 1.1 Nm.)
@@ -43,6 +47,11 @@ pub(crate) struct ReleaseDetector {
     mean: Vec<f64>,
     samples: u64,
     still_time: f64,
+    /// For how long the torque has been as low as a remainder (s), and its mean since.
+    low_time: f64,
+    low_mean: Vec<f64>,
+    /// Whether the torque that ended the contact did not stand still.
+    moving: bool,
     /// Each joint's greatest torque free of bias in this contact, with its sign.
     peak: Vec<f64>,
     /// Greatest norm of the torques (Nm) and of the forces (N).
@@ -57,6 +66,9 @@ impl ReleaseDetector {
             mean: vec![0.0; nv],
             samples: 0,
             still_time: 0.0,
+            low_time: 0.0,
+            low_mean: vec![0.0; nv],
+            moving: false,
             peak: vec![0.0; nv],
             greatest: [0.0; 2],
             rule,
@@ -87,11 +99,29 @@ impl ReleaseDetector {
             self.still_time = 0.0;
             self.mean.copy_from_slice(torque);
         }
+        self.moving = self.has_been_low(torque, bias, dt);
+        if self.moving {
+            return true;
+        }
         if self.samples < FEWEST_SAMPLES {
             return false;
         }
         let settled = self.rule.settle_time.is_some_and(|settle| self.still_time >= settle);
-        settled || (self.still_time >= STILL_TIME && (self.is_remainder(bias) || self.is_wrong_bias(bias)))
+        settled || (self.still_time >= STILL_TIME && (self.is_remainder(&self.mean, bias) || self.is_wrong_bias(bias)))
+    }
+
+    /// Whether the torque has been as low as a remainder for long enough, after a greater one.
+    fn has_been_low(&mut self, torque: &[f64], bias: &[f64], dt: f64) -> bool {
+        let left = norms(torque.iter().zip(bias).map(|(torque, bias)| torque - bias), &self.rule.is_force);
+        let low = left.iter().zip(&self.greatest).all(|(left, greatest)| *left <= LOW_SHARE * greatest);
+        if !(low && self.is_remainder(torque, bias)) {
+            self.low_time = 0.0;
+            return false;
+        }
+        self.low_time += dt;
+        let share = (dt / self.low_time).min(1.0);
+        self.low_mean.iter_mut().zip(torque).for_each(|(mean, torque)| *mean += share * (torque - *mean));
+        self.low_time >= LOW_TIME
     }
 
     fn find_peaks(&mut self, torque: &[f64], bias: &[f64]) {
@@ -105,10 +135,10 @@ impl ReleaseDetector {
         self.greatest.iter_mut().zip(norms).for_each(|(greatest, norm)| *greatest = greatest.max(norm));
     }
 
-    /// Whether hysteresis of the contact that has just ended may have left all that is over a threshold.
-    fn is_remainder(&self, bias: &[f64]) -> bool {
+    /// Whether hysteresis of the contact that has just ended may have left all of a torque that is over a threshold.
+    fn is_remainder(&self, torque: &[f64], bias: &[f64]) -> bool {
         let ReleaseRule { hysteresis, threshold, is_force, .. } = &self.rule;
-        let left = self.mean.iter().zip(bias).map(|(mean, bias)| mean - bias);
+        let left = torque.iter().zip(bias).map(|(torque, bias)| torque - bias);
         if norms(left.clone(), is_force).iter().zip(&self.limit).any(|(left, limit)| left > limit) {
             return false;
         }
@@ -127,19 +157,30 @@ impl ReleaseDetector {
         })
     }
 
-    /// The mean torque since it stands still `(nv,)`.
+    /// The torque that the contact left `(nv,)`: its mean since it stands still, or since it is low.
     pub fn remainder(&self) -> &[f64] {
-        &self.mean
+        if self.moving {
+            &self.low_mean
+        } else {
+            &self.mean
+        }
+    }
+
+    /// What hysteresis may have left of this contact in joint `k` (Nm).
+    pub fn could_keep(&self, k: usize) -> f64 {
+        self.rule.hysteresis[k] * self.peak[k].abs()
     }
 
     /// Nothing is known of the torque between the last sample and the next.
     pub fn interrupt(&mut self) {
         self.samples = 0;
+        self.low_time = 0.0;
     }
 
     /// Prepares for another contact.
     pub fn reset(&mut self) {
         self.samples = 0;
+        self.low_time = 0.0;
         self.peak.fill(0.0);
         self.greatest = [0.0; 2];
     }

@@ -1,6 +1,7 @@
 //! The external torque that errors of the model cause while nothing touches the robot.
 
-use crate::error::{Error, Result};
+use super::options::check_time_constant;
+use crate::error::Result;
 
 /// The first time constant is divided into so many blocks; the first bias is the median of their means. A median over
 /// time alone would need all samples.
@@ -30,12 +31,7 @@ impl BiasTracker {
     /// # Errors
     /// [`Error::Input`] where the time constant is not positive and finite.
     pub fn new(time_constant: f64, limit: Vec<f64>) -> Result<Self> {
-        if !(time_constant.is_finite() && time_constant > 0.0) {
-            return Err(Error::input(
-                "bias_time_constant",
-                format!("must be positive and finite [s], not {time_constant}"),
-            ));
-        }
+        check_time_constant(time_constant)?;
         let nv = limit.len();
         Ok(Self {
             time_constant,

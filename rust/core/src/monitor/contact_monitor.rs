@@ -7,10 +7,10 @@ use super::clock::SampleClock;
 use super::options::MonitorOptions;
 use super::report::ContactReport;
 use super::sensing::Sensing;
-use crate::detection::{Detector, ReleaseDetector};
+use crate::detection::{ContactTest, Detector, ReleaseDetector};
 use crate::error::{Error, Result};
 use crate::isolation::ContactIsolator;
-use crate::observer::MomentumObserver;
+use crate::observer::{MomentumObserver, Step};
 use crate::robot::Robot;
 use crate::sample::Sample;
 use crate::sensor::{SensorIndex, SensorTree};
@@ -46,12 +46,16 @@ pub struct ContactMonitor {
     pub(super) clock: SampleClock,
     pub(super) observer: MomentumObserver,
     pub(super) bias: Option<BiasTracker>,
+    /// Of all joints at once, with a bias of its own; none where each joint has a threshold.
+    pub(super) test: Option<ContactTest>,
+    /// Of each joint (Nm, N).
+    pub(super) threshold: Vec<f64>,
     pub(super) release: ReleaseDetector,
     pub(super) detector: Detector,
     pub(super) isolator: ContactIsolator,
     pub(super) sensing: Option<Sensing>,
     pub(super) options: MonitorOptions,
-    report: ContactReport,
+    pub(super) report: ContactReport,
 }
 
 impl ContactMonitor {
@@ -69,12 +73,14 @@ impl ContactMonitor {
         };
         let observer = observer.map_err(of_observer)?;
         let robot = Arc::clone(observer.robot());
+        let has_wanted = !options.isolation.wanted_contacts.is_empty();
+        let test = options.contact_test(&robot, observer.gain(), has_wanted)?;
         let options = &options.with_calibrated_noise(&robot, observer.gain())?;
         let tree = SensorTree::new(&robot, &options.isolation.sensors)?;
         let (threshold, _) = options.isolation.threshold_and_noise(&robot)?;
         let detector = Detector::new(
             robot.clone(),
-            &threshold,
+            if test.is_some() { &[1.0] } else { &threshold },
             &tree,
             &options.isolation.wrench_threshold,
             options.hold_time,
@@ -87,8 +93,8 @@ impl ContactMonitor {
             options.wrench_gain,
             options.dt,
         )?;
-        let greatest_bias = options.greatest_bias(detector.threshold())?;
-        let release = ReleaseDetector::new(options.release_rule(&robot, detector.threshold())?);
+        let greatest_bias = options.greatest_bias(&threshold)?;
+        let release = ReleaseDetector::new(options.release_rule(&robot, &threshold)?);
         let tracker = |constant| BiasTracker::new(constant, greatest_bias);
         let isolator = ContactIsolator::new(robot.clone(), &options.isolation)?;
         let sensors = options.isolation.sensors.len();
@@ -98,7 +104,9 @@ impl ContactMonitor {
             detector,
             release,
             sensing: (!options.isolation.sensors.is_empty()).then_some(sensing),
-            bias: options.bias_time_constant.map(tracker).transpose()?,
+            bias: options.bias_time_constant.filter(|_| test.is_none()).map(tracker).transpose()?,
+            test,
+            threshold,
             report: ContactReport {
                 links: Vec::with_capacity(robot.touchable_links().len()),
                 external_torque: vec![0.0; nv],
@@ -138,14 +146,16 @@ impl ContactMonitor {
         self.report.external_torque.copy_from_slice(external_torque);
         self.report.collision_torque.copy_from_slice(external_torque);
         if let Some(sensing) = &mut self.sensing {
-            let (threshold, dt) = (self.detector.threshold(), self.clock.dt());
+            let (threshold, dt) = (&self.threshold, self.clock.dt());
             sensing.update(&self.observer, sample.wrenches, threshold, step, dt);
             let collision_torque = self.report.collision_torque.iter_mut();
             collision_torque.zip(sensing.wanted_torque()).for_each(|(torque, wanted)| *torque -= wanted);
         }
         let felt = self.detector.sense(self.sensing.as_ref().map_or(&[], Sensing::unwanted));
-        let ready = self.remove_bias(length, !first && !step.is_gap(), felt);
-        if ready {
+        let new = !first && !step.is_gap();
+        if self.test.is_some() {
+            self.test_all_joints(step, new, felt);
+        } else if self.remove_bias(length, new, felt) {
             self.detector.update(&self.report.collision_torque, length);
         }
         if self.detector.collision() {
@@ -187,6 +197,41 @@ impl ContactMonitor {
             None => {}
         }
         sample.check(&self.robot)
+    }
+
+    /// Tests all joints at once, and subtracts the bias that the test follows; `new` and `felt` as in
+    /// [`ContactMonitor::remove_bias`].
+    fn test_all_joints(&mut self, step: Step, new: bool, felt: bool) {
+        let Self { test, observer, sensing, detector, release, report, clock, .. } = self;
+        let Some(test) = test else { return };
+        let ContactReport { collision_torque, external_torque, remainder_learned, significance, .. } = report;
+        let length = step.length(clock.dt());
+        *remainder_learned = false;
+        leave_out(sensing, collision_torque, Some(test.slow().bias()));
+        test.advance(observer, step);
+        test.evaluate(collision_torque);
+        let touched = detector.collision() || felt || test.suspicious();
+        if touched && !new {
+            release.interrupt();
+        } else if touched {
+            let torque = test.slowest(collision_torque);
+            let over = release.update(torque, test.slow().bias(), length);
+            if over && !felt && test.slow().allows(release.remainder(), |k| release.could_keep(k)) {
+                test.slow_mut().set(release.remainder());
+                release.reset();
+                detector.reset();
+                test.evaluate(collision_torque);
+                *remainder_learned = true;
+            }
+        } else {
+            release.reset();
+        }
+        test.follow(collision_torque, length, touched || !new);
+        detector.update(test.joints(), length);
+        *significance = Some(test.significance());
+        for torque in [collision_torque, external_torque] {
+            torque.iter_mut().zip(test.slow().bias()).for_each(|(torque, bias)| *torque -= bias);
+        }
     }
 
     /// Subtracts the bias, which follows the collision torque while nothing touches, over a step of `length` (s). `new`
@@ -274,6 +319,10 @@ impl ContactMonitor {
         if let Some(bias) = &mut self.bias {
             bias.reset();
         }
+        if let Some(test) = &mut self.test {
+            test.reset();
+            self.report.significance = Some(0.0);
+        }
         self.finish_report();
     }
 
@@ -289,7 +338,8 @@ impl ContactMonitor {
 
     /// The bias that is subtracted `(nv,)`; none without tracking.
     pub fn bias(&self) -> Option<&[f64]> {
-        self.bias.as_ref().map(BiasTracker::bias)
+        let of_test = self.test.as_ref().map(|test| test.slow().bias());
+        of_test.or_else(|| self.bias.as_ref().map(BiasTracker::bias))
     }
 
     /// The sensors' names.

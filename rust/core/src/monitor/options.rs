@@ -1,7 +1,9 @@
 //! Settings of the monitor.
 
+use std::sync::Arc;
+
 use crate::calibration::Calibration;
-use crate::detection::ReleaseRule;
+use crate::detection::{ContactTest, ReleaseRule, FOLLOW_TIME};
 use crate::error::{Error, Result};
 use crate::isolation::IsolatorOptions;
 use crate::robot::{JointKind, Robot};
@@ -42,7 +44,8 @@ pub struct MonitorOptions {
     pub isolation: IsolatorOptions,
     /// A signal stays on for this time after it was last over its threshold (s).
     pub hold_time: f64,
-    /// Time constant of the bias that is tracked while nothing touches (s); none for no tracking.
+    /// Time constant of the bias that is tracked while nothing touches (s); none for no tracking, or 3 s where all joints are
+    /// tested at once: there is a calibration and no `torque_threshold`.
     pub bias_time_constant: Option<f64>,
     /// Greatest bias of each joint, in its thresholds; infinite for no limit. A model that is farther off must be mended.
     pub bias_limit: f64,
@@ -79,6 +82,31 @@ impl MonitorOptions {
             bias_settle_time: None,
             hysteresis: vec![HYSTERESIS],
         }
+    }
+
+    /// The test of all joints at once, where there is a calibration and no threshold for single joints. `gain` `(nv,)` is the
+    /// observer's; `one_torque`: only that observer's torque is looked at.
+    pub(super) fn contact_test(
+        &self,
+        corrected: &Arc<Robot>,
+        gain: &[f64],
+        one_torque: bool,
+    ) -> Result<Option<ContactTest>> {
+        let Some(calibration) = self.calibration.as_ref().filter(|_| self.isolation.torque_threshold.is_none())
+        else {
+            return Ok(None);
+        };
+        let time = self.bias_time_constant.unwrap_or(FOLLOW_TIME);
+        check_time_constant(time)?;
+        let variances = calibration.noise.variances(corrected)?;
+        let (robot, nv) = (Arc::clone(corrected), corrected.nv());
+        let levels = calibration.levels(nv, self.dt);
+        Ok(Some(if one_torque || levels.is_empty() {
+            let level = calibration.level_at(nv, gain, self.dt);
+            ContactTest::of_one_torque(robot, &variances, self.dt, gain, level, time)
+        } else {
+            ContactTest::new(robot, &variances, self.dt, &levels, time)
+        }))
     }
 
     /// With the noise of the calibration, and thresholds for its rate of false alarms, where none are given; `gain` `(nv,)`
@@ -135,4 +163,12 @@ fn forces_of(kind: JointKind) -> &'static [bool] {
         JointKind::Prismatic => &[true],
         JointKind::Revolute | JointKind::Continuous => &[false],
     }
+}
+
+/// Whether a bias can be followed with a time constant (s).
+pub(super) fn check_time_constant(time: f64) -> Result<()> {
+    if time.is_finite() && time > 0.0 {
+        return Ok(());
+    }
+    Err(Error::input("bias_time_constant", format!("must be positive and finite [s], not {time}")))
 }

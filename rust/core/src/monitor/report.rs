@@ -33,6 +33,9 @@ pub struct ContactReport {
     pub collision: bool,
     /// Whether it began with this tick.
     pub onset: bool,
+    /// How unlikely the torques are without contact: a Gaussian number would be so many standard deviations off as rarely.
+    /// The largest over all gains of the observers; none where each joint has a threshold of its own.
+    pub significance: Option<f64>,
     /// Whether a torque that stood still became the bias in this tick, which ended the contact: what hysteresis may have
     /// left, what outlasted [`MonitorOptions::bias_settle_time`](super::MonitorOptions::bias_settle_time), or no torque at
     /// all where the bias before was wrong.

@@ -12,10 +12,10 @@ use crate::sensor::SensorTree;
 impl ContactMonitor {
     /// The thresholds on torques `(nv,)` (Nm, N).
     pub fn torque_threshold(&self) -> &[f64] {
-        self.detector.threshold()
+        &self.threshold
     }
 
-    /// Other thresholds on torques, one for all velocity variables or one for each (Nm, N). The greatest bias follows them.
+    /// Other thresholds on torques, in place of a test of all joints at once: one for all velocity variables or one for each (Nm, N). The greatest bias follows them.
     ///
     /// Not for the control loop: it allocates.
     ///
@@ -24,7 +24,12 @@ impl ContactMonitor {
     pub fn set_torque_threshold(&mut self, threshold: &[f64]) -> Result<()> {
         let isolation =
             IsolatorOptions { torque_threshold: Some(threshold.to_vec()), ..self.options.isolation.clone() };
-        self.set_isolation(isolation)
+        self.set_isolation(isolation)?;
+        if self.test.take().is_some() {
+            self.report.significance = None;
+        }
+        self.detector.set_threshold(self.threshold.clone());
+        Ok(())
     }
 
     /// The thresholds on each sensor's wrench (N, Nm).
@@ -57,7 +62,8 @@ impl ContactMonitor {
             bias.set_limit(greatest_bias);
         }
         self.release.set_rule(rule);
-        self.detector.set_thresholds(threshold, wrench_threshold);
+        self.threshold = threshold;
+        self.detector.set_wrench_threshold(wrench_threshold);
         self.options = options;
         Ok(())
     }

@@ -51,6 +51,8 @@ pub struct MomentumObserver {
     known_rate: Vec<f64>,
     known_rate_before: Vec<f64>,
     external_torque: Vec<f64>,
+    /// What the change of momentum over the last step says of the external torque, before any low-pass.
+    unexplained: Vec<f64>,
     /// `tau_m - tau_f`.
     motor_torque: Vec<f64>,
     velocity: Vec<f64>,
@@ -58,6 +60,8 @@ pub struct MomentumObserver {
     acceleration: Vec<f64>,
     acceleration_is_current: bool,
     started: bool,
+    /// Whether the last step was integrated: neither the first nor one over a gap.
+    integrated: bool,
 }
 
 impl MomentumObserver {
@@ -82,12 +86,14 @@ impl MomentumObserver {
             known_rate: zeros.clone(),
             known_rate_before: zeros.clone(),
             external_torque: zeros.clone(),
+            unexplained: zeros.clone(),
             motor_torque: zeros.clone(),
             velocity: zeros.clone(),
             total_torque: zeros.clone(),
             acceleration: zeros,
             acceleration_is_current: true,
             started: false,
+            integrated: false,
             calibration: None,
             robot,
         })
@@ -137,7 +143,8 @@ impl MomentumObserver {
             self.motor_torque[missing..].iter_mut().zip(friction).for_each(|(tau, f)| *tau -= f);
         }
         self.known_rate.iter_mut().zip(&self.motor_torque).for_each(|(rate, tau)| *rate += tau);
-        if self.started && !step.is_gap() {
+        self.integrated = self.started && !step.is_gap();
+        if self.integrated {
             self.integrate(step);
         }
         self.started = true;
@@ -152,6 +159,7 @@ impl MomentumObserver {
         for j in 0..self.external_torque.len() {
             let rate = (self.momentum[j] - self.momentum_before[j]) * inverse;
             let unexplained = rate - 0.5 * (self.known_rate[j] + self.known_rate_before[j]);
+            self.unexplained[j] = unexplained;
             let decay = match step {
                 Step::Nominal => self.decay[j],
                 _ => (-self.gain[j] * length).exp(),
@@ -160,9 +168,20 @@ impl MomentumObserver {
         }
     }
 
+    /// The external torque `(nv,)` over the last step as the change of momentum shows it, without low-pass; none before the
+    /// second step and over a gap.
+    pub(crate) fn unexplained(&self) -> Option<&[f64]> {
+        self.integrated.then_some(&self.unexplained[..])
+    }
+
+    /// The corrected velocity `(nv,)` of the last step.
+    pub(crate) fn velocity(&self) -> &[f64] {
+        &self.velocity
+    }
+
     /// Forgets all steps; the next call is a first call.
     pub fn reset(&mut self) {
-        self.started = false;
+        (self.started, self.integrated) = (false, false);
         self.external_torque.fill(0.0);
         self.acceleration.fill(0.0);
         self.acceleration_is_current = true;

@@ -24,7 +24,7 @@ pub(crate) mod test_tree;
 
 pub use description::{JointDescription, JointKind, LinkDescription, RobotDescription};
 pub use dynamics::{ForwardDynamics, MomentumPass};
-pub(crate) use dynamics::{MomentumRegressor, PARAMETERS};
+pub(crate) use dynamics::{MassMatrixPass, MomentumRegressor, PARAMETERS};
 pub use ids::{BodyIndex, LinkIndex};
 pub use kinematics::{BodyState, Kinematics};
 pub use link::Link;

@@ -1,5 +1,6 @@
 //! What explains an external torque: how large its errors are, and what a force at a surface point does to the joints.
 
+mod error_variances;
 mod fit;
 mod force_model;
 mod frames;
@@ -11,6 +12,7 @@ pub(crate) use fit::{BestForce, NormalFit};
 pub(crate) use force_model::directions;
 pub use force_model::ForceModel;
 pub(crate) use frames::{Frame, Frames};
+pub(crate) use error_variances::{ErrorVariances, SlowNoise};
 pub use noise_model::NoiseModel;
 pub(crate) use noise_model::{largest, TorqueNoise, LEVEL};
 pub(crate) use target::Target;

@@ -34,6 +34,11 @@ pub struct NoiseModel {
     pub model: Vec<f64>,
     /// Time over which these change (s).
     pub model_time: Vec<f64>,
+    /// Errors of friction while a joint starts, stops or turns round (Nm; N for sliding joints).
+    pub friction: Vec<f64>,
+    /// What the bias differs by from one start to the next: gears keep a part of their load, sensors drift (Nm; N for sliding
+    /// joints).
+    pub bias: Vec<f64>,
 }
 
 impl Default for NoiseModel {
@@ -44,6 +49,8 @@ impl Default for NoiseModel {
             relative: vec![0.03],
             model: vec![0.1],
             model_time: vec![1.0],
+            friction: vec![0.0],
+            bias: vec![0.0],
         }
     }
 }
@@ -57,13 +64,7 @@ const LARGEST_SHARE: f64 = 0.1;
 impl NoiseModel {
     /// White noise of a torque at rest and a share of the torque: all that most callers know.
     pub(crate) fn short(torque: Vec<f64>, relative: f64) -> Self {
-        NoiseModel {
-            torque,
-            velocity: vec![0.0],
-            relative: vec![relative],
-            model: vec![0.0],
-            model_time: vec![1.0],
-        }
+        NoiseModel { torque, relative: vec![relative], model: vec![0.0], ..NoiseModel::default() }
     }
 
     /// The covariance of the external torque of the untouched robot at `q` behind an observer of a `gain` (1/s) that is called
@@ -147,6 +148,8 @@ impl NoiseModel {
             ("relative", &self.relative),
             ("model", &self.model),
             ("model_time", &self.model_time),
+            ("friction", &self.friction),
+            ("bias", &self.bias),
         ] {
             if let Some(value) = values.iter().find(|x| !(0.0..LARGEST).contains(*x)) {
                 return Err(Error::input(name, format!("must be finite and not negative, not {value}")));
@@ -163,6 +166,8 @@ impl NoiseModel {
         self.check()?;
         robot.per_velocity("noise.velocity", &self.velocity)?;
         robot.per_velocity("noise.model_time", &self.model_time)?;
+        robot.per_velocity("noise.friction", &self.friction)?;
+        robot.per_velocity("noise.bias", &self.bias)?;
         let torque = robot.per_velocity("noise.torque", &self.torque)?;
         let model = robot.per_velocity("noise.model", &self.model)?;
         let relative = robot.per_velocity("noise.relative", &self.relative)?;

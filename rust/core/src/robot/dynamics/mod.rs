@@ -8,5 +8,6 @@ mod momentum;
 mod regressor;
 
 pub use forward::ForwardDynamics;
+pub(crate) use mass_matrix::MassMatrixPass;
 pub use momentum::MomentumPass;
 pub(crate) use regressor::{MomentumRegressor, MOMENTS, PARAMETERS};

@@ -1,0 +1,34 @@
+//! Levels of the statistic of detection that contact-free motion exceeds at the chosen rate.
+
+use super::{Calibration, Tail};
+use crate::detection::{gaussian_level, Level, GAINS, LARGEST_STEP};
+
+impl Calibration {
+    /// Levels for a bank of observers called every `dt` (s), of those gains that the log could judge; the rate of false alarms
+    /// is shared between them. Empty where `dt` is too long for all of them.
+    pub(crate) fn levels(&self, nv: usize, dt: f64) -> Vec<Level> {
+        let known: Vec<f64> = match &self.tails[..] {
+            [] => GAINS.to_vec(),
+            tails => tails.iter().map(|tail| tail.gain).collect(),
+        };
+        let gains: Vec<f64> = known.into_iter().filter(|gain| gain * dt <= LARGEST_STEP).collect();
+        let rate = self.false_alarms_per_hour / gains.len() as f64;
+        let level = |gain: f64| {
+            let gaussian = gaussian_level(nv, gain, dt, rate);
+            let tail = self.tails.iter().find(|tail| tail.gain == gain);
+            Level { gain, level: gaussian.max(tail.map_or(0.0, |tail| tail.at(rate))), gaussian }
+        };
+        gains.into_iter().map(level).collect()
+    }
+
+    /// The level for the torque of one observer of a gain a joint (1/s): errors widen it as much as at the worst of the gains
+    /// that the log judged.
+    pub(crate) fn level_at(&self, nv: usize, gain: &[f64], dt: f64) -> Level {
+        let rate = self.false_alarms_per_hour;
+        let fastest = gain.iter().copied().fold(0.0, f64::max);
+        let gaussian = gaussian_level(nv, fastest, dt, rate);
+        let widened = |tail: &Tail| tail.at(rate) / gaussian_level(nv, tail.gain, dt, rate);
+        let widest = self.tails.iter().map(widened).fold(1.0, f64::max);
+        Level { gain: fastest, level: gaussian * widest, gaussian }
+    }
+}

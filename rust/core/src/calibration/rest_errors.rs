@@ -1,0 +1,273 @@
+//! What detection has to expect of an untouched robot, from blocks of a log that were not fitted: how slow the errors of the
+//! model are, what friction does at starts and stops, what the bias may be at the next start, and the tails of the statistic.
+
+use std::sync::Arc;
+
+use super::log::Log;
+use super::noise::Judged;
+use crate::detection::{
+    gaussian_level, ContactTest, FrictionErrors, Level, Tail, FOLLOW_TIME, GAINS, LARGEST_STEP, PEAK_TIME, SLOW,
+};
+use crate::error::Result;
+use crate::observer::{MomentumObserver, ObserverBank, Step};
+use crate::robot::Robot;
+use crate::torque::NoiseModel;
+use crate::Sample;
+
+/// Time between the samples that are kept (s).
+const SPACING: f64 = 0.01;
+/// What comes earlier in a block belongs to the start of the observers (s).
+const SETTLED: f64 = 1.0;
+/// A start or stop shows in the torque for so long (s),
+const EVENT_TIME: f64 = 0.15;
+/// against what it was this long before (s).
+const BEFORE_TIME: f64 = 0.08;
+/// A joint that started and stopped less often keeps this share of its Coulomb friction as the error.
+const FEWEST_EVENTS: usize = 4;
+const UNKNOWN_SHARE: f64 = 0.2;
+/// Slow errors change over times between these (s).
+const TIMES: [f64; 2] = [0.02, 20.0];
+/// At least this share of the mean square of slow errors is left after following them.
+const SMALLEST_SHARE: f64 = 0.02;
+/// Poses of a block at which the noise of velocities is worked out.
+const POSES: usize = 20;
+
+/// Torques of one stretch without gap or contact.
+#[derive(Default)]
+struct Stretch {
+    /// Behind the slowest gain, the same less what is followed, and behind the gain for starts and stops.
+    slow: Vec<Vec<f64>>,
+    followed: Vec<Vec<f64>>,
+    fast: Vec<Vec<f64>>,
+    velocity: Vec<Vec<f64>>,
+}
+
+/// Completes a noise model, and finds the tails of the statistic for those gains that the log's step allows. `coulomb` is the
+/// friction of each joint, `skipped` says which rows have a contact, `step` is the usual one (s).
+pub(super) fn rest_errors(
+    robot: &Robot,
+    log: &Log<'_>,
+    parts: &[Judged],
+    skipped: &[bool],
+    step: f64,
+    coulomb: &[f64],
+    mut noise: NoiseModel,
+) -> Result<(NoiseModel, Vec<Tail>)> {
+    let gains: Vec<f64> = GAINS.into_iter().filter(|gain| gain * step <= LARGEST_STEP).collect();
+    let rms = |j: usize| {
+        let squares = (0..log.len()).map(|row| log.tau_of(row)[j].powi(2)).sum::<f64>();
+        (squares / log.len() as f64).sqrt()
+    };
+    noise.bias = (0..robot.nv()).map(|j| noise.relative[j] * rms(j)).collect();
+    if gains.is_empty() {
+        noise.friction = coulomb.iter().map(|coulomb| UNKNOWN_SHARE * coulomb).collect();
+        return Ok((noise, vec![]));
+    }
+    let mut stretches = vec![];
+    for part in parts {
+        stretches.extend(part.stretches(robot, log, skipped, step, &gains)?);
+    }
+    let white = white_variance(robot, log, parts, &noise, gains[0], step)?;
+    let spacing = SPACING.max(step);
+    let event_gain = gains[1.min(gains.len() - 1)];
+    for j in 0..robot.nv() {
+        let (model, time) = slow_errors(&stretches, j, white[j], gains[0]).unwrap_or((0.0, TIMES[0]));
+        noise.model[j] = model.sqrt();
+        noise.model_time[j] = time;
+    }
+    noise.friction = (0..robot.nv())
+        .map(|j| match events(&stretches, j, spacing) {
+            Some(square) => (square / FrictionErrors::response(event_gain)).sqrt(),
+            None => UNKNOWN_SHARE * coulomb[j],
+        })
+        .collect();
+    let tails = tails(robot, log, parts, skipped, step, &gains, &noise)?;
+    Ok((noise, tails))
+}
+
+impl Judged {
+    /// Calls `row` with each row without contact, and `restart` where a new stretch begins.
+    fn each_row(
+        &self,
+        robot: &Robot,
+        log: &Log<'_>,
+        skipped: &[bool],
+        step: f64,
+        mut row: impl FnMut(&MomentumObserver, f64, bool),
+    ) -> Result<()> {
+        let mut observer = MomentumObserver::new(Arc::clone(&self.robot), step, &[GAINS[0]])?;
+        let mut torque = self.torque.clone();
+        let (mut v, mut tau) = (vec![0.0; robot.nv()], vec![0.0; robot.nv()]);
+        let mut starts = true;
+        for index in self.rows.clone() {
+            let first = index == self.rows.start;
+            let dt = if first { step } else { log.time[index] - log.time[index - 1] };
+            if skipped[index] || dt > super::LONGEST_STEPS * step {
+                observer.reset();
+                torque.reset();
+                starts = true;
+                continue;
+            }
+            tau.copy_from_slice(log.tau_of(index));
+            v.copy_from_slice(log.v_of(robot, index));
+            torque.correct(if starts { 0.0 } else { dt }, &mut v, &mut tau);
+            observer.advance(&Sample::new(log.q_of(robot, index), &v, &tau), Step::Of(dt));
+            row(&observer, dt, starts);
+            starts = false;
+        }
+        Ok(())
+    }
+
+    fn stretches(
+        &self,
+        robot: &Robot,
+        log: &Log<'_>,
+        skipped: &[bool],
+        step: f64,
+        gains: &[f64],
+    ) -> Result<Vec<Stretch>> {
+        let nv = robot.nv();
+        let mut bank = ObserverBank::new(nv, step, gains);
+        let event = 1.min(gains.len() - 1);
+        let mut bias = vec![0.0; nv];
+        let (mut since, mut kept) = (0.0, 0.0);
+        let mut stretches: Vec<Stretch> = vec![];
+        self.each_row(robot, log, skipped, step, |observer, dt, starts| {
+            if starts {
+                bank.reset();
+                bias.fill(0.0);
+                (since, kept) = (0.0, 0.0);
+                stretches.push(Stretch::default());
+            }
+            bank.advance(observer, Step::Of(dt));
+            since += dt;
+            kept += dt;
+            let torque = &bank.torques()[0];
+            let share = (dt / FOLLOW_TIME).min(1.0);
+            bias.iter_mut().zip(torque).for_each(|(bias, torque)| *bias += share * (torque - *bias));
+            if let Some(stretch) = stretches.last_mut().filter(|_| since > SETTLED && kept >= SPACING - 0.5 * dt) {
+                kept = 0.0;
+                stretch.slow.push(torque.clone());
+                stretch.followed.push(torque.iter().zip(&bias).map(|(torque, bias)| torque - bias).collect());
+                stretch.fast.push(bank.torques()[event].clone());
+                stretch.velocity.push(observer.velocity().to_vec());
+            }
+        })?;
+        Ok(stretches)
+    }
+}
+
+/// By velocity variable: what white noise of torque and velocity leave behind an observer.
+fn white_variance(
+    robot: &Robot,
+    log: &Log<'_>,
+    parts: &[Judged],
+    noise: &NoiseModel,
+    gain: f64,
+    step: f64,
+) -> Result<Vec<f64>> {
+    let white = NoiseModel { model: vec![0.0], ..noise.clone() };
+    let (mut sum, mut poses) = (vec![0.0; robot.nv()], 0.0);
+    for part in parts {
+        for row in part.rows.clone().step_by((part.rows.len() / POSES).max(1)) {
+            let covariance = white.covariance(&part.robot, log.q_of(robot, row), gain, step)?;
+            sum.iter_mut().enumerate().for_each(|(j, sum)| *sum += covariance[(j, j)]);
+            poses += 1.0;
+        }
+    }
+    Ok(sum.into_iter().map(|sum| sum / f64::max(poses, 1.0)).collect())
+}
+
+/// The variance of slow errors of a joint and the time over which they change (s), from their mean square before and after a
+/// low-pass is subtracted that follows them.
+fn slow_errors(stretches: &[Stretch], joint: usize, white: f64, gain: f64) -> Option<(f64, f64)> {
+    let mean_square = |of: &dyn Fn(&Stretch) -> &Vec<Vec<f64>>| {
+        let values = stretches.iter().flat_map(|stretch| of(stretch).iter().map(|row| row[joint].powi(2)));
+        let (sum, count) = values.fold((0.0, 0), |(sum, count), square| (sum + square, count + 1));
+        (count > 0).then(|| sum / f64::from(count))
+    };
+    let before = (mean_square(&|stretch| &stretch.slow)? - white).max(0.0);
+    let after = (mean_square(&|stretch| &stretch.followed)? - white).max(SMALLEST_SHARE * before);
+    if after == 0.0 {
+        return Some((0.0, TIMES[0]));
+    }
+    let time = (FOLLOW_TIME * (before / after - 1.0)).clamp(TIMES[0], TIMES[1]);
+    Some((before.max(after) / NoiseModel::model_share(gain, time), time))
+}
+
+/// The mean square of what a joint's torque does at starts and stops beyond what it does in motion; none of too few.
+fn events(stretches: &[Stretch], joint: usize, spacing: f64) -> Option<f64> {
+    let [event, before] = [EVENT_TIME, BEFORE_TIME].map(|time| (time / spacing).ceil() as usize);
+    let (mut at_events, mut in_motion) = (vec![], vec![]);
+    for stretch in stretches {
+        let slow: Vec<bool> = stretch.velocity.iter().map(|v| v[joint].abs() < SLOW).collect();
+        let mut row = before;
+        while row + event <= slow.len() {
+            let start = stretch.fast[row - before][joint];
+            let peak = stretch.fast[row..row + event].iter().map(|r| (r[joint] - start).abs()).fold(0.0, f64::max);
+            if slow[row] != slow[row - 1] {
+                at_events.push(peak * peak);
+                row += 1;
+            } else if slow[row - before..row + event].iter().any(|slow| *slow) {
+                row += 1;
+            } else {
+                in_motion.push(peak * peak);
+                row += event;
+            }
+        }
+    }
+    if at_events.len() < FEWEST_EVENTS {
+        return None;
+    }
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
+    Some((mean(&at_events) - mean(&in_motion)).max(0.0))
+}
+
+/// The tails of the statistic for each gain.
+fn tails(
+    robot: &Robot,
+    log: &Log<'_>,
+    parts: &[Judged],
+    skipped: &[bool],
+    step: f64,
+    gains: &[f64],
+    noise: &NoiseModel,
+) -> Result<Vec<Tail>> {
+    let nv = robot.nv();
+    let levels: Vec<Level> = gains
+        .iter()
+        .map(|gain| {
+            let level = gaussian_level(nv, *gain, step, 1.0);
+            Level { gain: *gain, level, gaussian: level }
+        })
+        .collect();
+    let mut peaks: Vec<Vec<f64>> = vec![vec![]; gains.len()];
+    for part in parts {
+        let variances = noise.variances(&part.robot)?;
+        let mut test = ContactTest::new(Arc::clone(&part.robot), &variances, step, &levels, FOLLOW_TIME);
+        let mut largest = vec![0.0_f64; gains.len()];
+        let (mut since, mut window) = (0.0, 0.0);
+        part.each_row(robot, log, skipped, step, |observer, dt, starts| {
+            if starts {
+                test.reset();
+                largest.fill(0.0);
+                (since, window) = (0.0, 0.0);
+            }
+            test.advance(observer, Step::Of(dt));
+            test.evaluate(&[]);
+            test.follow(&[], dt, starts || test.suspicious());
+            since += dt;
+            if since < SETTLED {
+                return;
+            }
+            largest.iter_mut().zip(test.statistics()).for_each(|(largest, new)| *largest = largest.max(new));
+            window += dt;
+            if window >= PEAK_TIME {
+                peaks.iter_mut().zip(&largest).for_each(|(peaks, largest)| peaks.push(*largest));
+                largest.fill(0.0);
+                window = 0.0;
+            }
+        })?;
+    }
+    Ok(gains.iter().zip(&mut peaks).filter_map(|(gain, peaks)| Tail::of_peaks(*gain, peaks)).collect())
+}

@@ -1,0 +1,261 @@
+//! One statistic of all joints and several gains against a level: is the robot touched (algorithm D3)?
+
+use std::sync::Arc;
+
+use super::friction_errors::FrictionErrors;
+use super::slow_errors::SlowErrors;
+use super::velocity_covariance::VelocityCovariance;
+use super::whitening::Whitening;
+use crate::math::chi_square::standard_deviations;
+use crate::observer::{MomentumObserver, ObserverBank, Step};
+use crate::robot::Robot;
+use crate::torque::{ErrorVariances, NoiseModel};
+
+/// Gains of the bank (1/s): a slow one sees weak contacts, a fast one hard impacts early.
+pub(crate) const GAINS: [f64; 3] = [8.0, 50.0, 200.0];
+/// The largest step of an observer, as a share of its time constant, at which its output still means something.
+pub(crate) const LARGEST_STEP: f64 = 0.6;
+/// Time constant with which slow errors are followed (s): longer than a push by a person, shorter than the time over which
+/// gears settle and masses move.
+pub(crate) const FOLLOW_TIME: f64 = 3.0;
+/// Slow errors are not followed beyond this share of the level: what grows slowly may be a contact.
+const SUSPICIOUS: f64 = 0.5;
+/// A joint is over its own threshold beyond so many standard deviations.
+const JOINT_LEVEL: f64 = 5.0;
+
+/// A torque behind observers of one gain a joint, and its covariance.
+#[derive(Debug, Clone)]
+struct Signal {
+    /// What the observer leaves of the variance of each error, by velocity variable; of the velocities' as a root.
+    torque: Vec<f64>,
+    velocity: Vec<f64>,
+    model: Vec<f64>,
+    friction: Vec<f64>,
+    whitening: Whitening,
+    /// That the statistic exceeds at the chosen rate of false alarms.
+    level: f64,
+    /// The level of Gaussian errors.
+    gaussian_level: f64,
+    statistic: f64,
+}
+
+impl Signal {
+    fn new(variances: &ErrorVariances, gain: &[f64], dt: f64, level: f64, gaussian_level: f64) -> Self {
+        let by_joint = |share: &dyn Fn(usize) -> f64| (0..gain.len()).map(share).collect::<Vec<f64>>();
+        Signal {
+            torque: by_joint(&|j| variances.torque[j] * NoiseModel::torque_share(gain[j], dt)),
+            velocity: by_joint(&|j| NoiseModel::velocity_share(gain[j], dt).sqrt()),
+            model: by_joint(&|j| NoiseModel::model_share(gain[j], variances.slow.model_time[j])),
+            friction: by_joint(&|j| variances.friction[j] * FrictionErrors::response(gain[j])),
+            whitening: Whitening::new(gain.len()),
+            level,
+            gaussian_level,
+            statistic: 0.0,
+        }
+    }
+
+    #[inline]
+    fn set_covariance(&mut self, velocity: &VelocityCovariance, slow: &SlowErrors, friction: &FrictionErrors) {
+        let Signal { whitening, .. } = self;
+        let (torque, root, model, of_friction) = (&self.torque, &self.velocity, &self.model, &self.friction);
+        let shares = friction.shares();
+        whitening.set(|i, row| {
+            for ((value, product), other) in row.iter_mut().zip(velocity.row(i)).zip(root) {
+                *value = product * root[i] * other;
+            }
+            row[i] += torque[i] + slow.variance(i, model[i]) + of_friction[i] * shares[i];
+        });
+    }
+}
+
+/// Levels of a statistic for one gain.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Level {
+    /// Of the observer (1/s).
+    pub gain: f64,
+    /// That is exceeded at the chosen rate.
+    pub level: f64,
+    /// That Gaussian errors exceed at that rate.
+    pub gaussian: f64,
+}
+
+/// Tests whether the external torque is more than the errors of the untouched robot.
+#[derive(Debug, Clone)]
+pub(crate) struct ContactTest {
+    robot: Arc<Robot>,
+    dt: f64,
+    /// None: the torque that is given is the only signal.
+    bank: Option<ObserverBank>,
+    signals: Vec<Signal>,
+    velocity: VelocityCovariance,
+    slow: SlowErrors,
+    friction: FrictionErrors,
+    /// The signal whose covariance is next.
+    next: usize,
+    started: bool,
+    without_bias: Vec<f64>,
+    /// By velocity variable: over one where the joint is over its own threshold.
+    joints: Vec<f64>,
+    suspicious: bool,
+}
+
+impl ContactTest {
+    /// A test over a bank of observers, one a level. Slow errors are followed with a time constant (s); `dt` (s) is the
+    /// nominal step.
+    pub fn new(
+        robot: Arc<Robot>,
+        variances: &ErrorVariances,
+        dt: f64,
+        levels: &[Level],
+        follow_time: f64,
+    ) -> Self {
+        let nv = robot.nv();
+        let gains: Vec<f64> = levels.iter().map(|level| level.gain).collect();
+        let signal = |level: &Level| {
+            Signal::new(variances, &vec![level.gain; nv], dt, level.level, level.gaussian)
+        };
+        ContactTest {
+            bank: Some(ObserverBank::new(nv, dt, &gains)),
+            signals: levels.iter().map(signal).collect(),
+            velocity: VelocityCovariance::new(&robot, &variances.velocity),
+            slow: SlowErrors::new(variances.slow.clone(), follow_time),
+            friction: FrictionErrors::new(nv),
+            next: 0,
+            started: false,
+            without_bias: vec![0.0; nv],
+            joints: vec![0.0; nv],
+            suspicious: false,
+            robot,
+            dt,
+        }
+    }
+
+    /// The same of one torque, that of an observer of a gain a joint.
+    pub fn of_one_torque(
+        robot: Arc<Robot>,
+        variances: &ErrorVariances,
+        dt: f64,
+        gain: &[f64],
+        level: Level,
+        follow_time: f64,
+    ) -> Self {
+        let signal = Signal::new(variances, gain, dt, level.level, level.gaussian);
+        let test = ContactTest::new(robot, variances, dt, &[], follow_time);
+        ContactTest { bank: None, signals: vec![signal], ..test }
+    }
+
+    /// After a step of the observer.
+    #[inline]
+    pub fn advance(&mut self, observer: &MomentumObserver, step: Step) {
+        if let Some(bank) = &mut self.bank {
+            bank.advance(observer, step);
+        }
+        self.velocity.advance(&self.robot, observer.kinematics());
+        self.friction.advance(observer.velocity(), step.length(self.dt));
+        let all = 0..self.signals.len();
+        let due = if self.started { self.next..self.next + 1 } else { all };
+        for signal in &mut self.signals[due] {
+            signal.set_covariance(&self.velocity, &self.slow, &self.friction);
+        }
+        self.next = (self.next + 1) % self.signals.len();
+        self.started = true;
+    }
+
+    /// Compares the torques without bias with their errors; `torque` `(nv,)` is the one to look at without a bank.
+    #[inline]
+    pub fn evaluate(&mut self, torque: &[f64]) {
+        let Self { bank, signals, slow, without_bias, joints, .. } = self;
+        self.suspicious = false;
+        joints.fill(0.0);
+        for (which, signal) in signals.iter_mut().enumerate() {
+            let torque = bank.as_ref().map_or(torque, |bank| &bank.torques()[which]);
+            for ((value, torque), bias) in without_bias.iter_mut().zip(torque).zip(slow.bias()) {
+                *value = torque - bias;
+            }
+            signal.statistic = signal.whitening.squared_norm(without_bias);
+            self.suspicious |= signal.statistic > SUSPICIOUS * signal.level;
+            if signal.statistic <= signal.level {
+                continue;
+            }
+            // Errors that are not Gaussian widen the thresholds of single joints as much as that of the statistic.
+            let widened = (signal.level / signal.gaussian_level).sqrt();
+            let deviations = signal.whitening.deviations();
+            let shares = without_bias.iter().zip(deviations).map(|(torque, deviation)| (torque / deviation).abs());
+            let largest = shares.clone().fold(0.0, f64::max);
+            let threshold = f64::min(JOINT_LEVEL * widened, largest * ALMOST);
+            for (joint, share) in joints.iter_mut().zip(shares) {
+                *joint = joint.max(share / threshold);
+            }
+        }
+    }
+
+    /// A step of `dt` (s): slow errors are followed, or not where something may touch the robot. `torque` as in
+    /// [`ContactTest::evaluate`].
+    #[inline]
+    pub fn follow(&mut self, torque: &[f64], dt: f64, touched: bool) {
+        if touched {
+            self.slow.lose(dt);
+        } else {
+            let torque = self.bank.as_ref().map_or(torque, |bank| &bank.torques()[0]);
+            self.slow.follow(torque, dt);
+        }
+    }
+
+    /// The torque that slow errors are followed by, `torque` without a bank.
+    pub fn slowest<'a>(&'a self, torque: &'a [f64]) -> &'a [f64] {
+        self.bank.as_ref().map_or(torque, |bank| &bank.torques()[0])
+    }
+
+    /// Whether one is so large that slow errors are not followed.
+    pub fn suspicious(&self) -> bool {
+        self.suspicious
+    }
+
+    /// By velocity variable: over one where the joint is over its own threshold. At least one is where a statistic is over
+    /// its level.
+    pub fn joints(&self) -> &[f64] {
+        &self.joints
+    }
+
+    /// By gain, `r' S^-1 r`.
+    pub fn statistics(&self) -> impl Iterator<Item = f64> + '_ {
+        self.signals.iter().map(|signal| signal.statistic)
+    }
+
+    /// How unlikely the torque is without contact: so many standard deviations a Gaussian number would be off as rarely, the
+    /// largest of all gains.
+    #[inline]
+    pub fn significance(&self) -> f64 {
+        let nv = self.joints.len();
+        let of_signal = |signal: &Signal| {
+            standard_deviations(nv, signal.statistic * signal.gaussian_level / signal.level)
+        };
+        self.signals.iter().map(of_signal).fold(0.0, f64::max)
+    }
+
+    /// What is known of slow errors.
+    pub fn slow(&self) -> &SlowErrors {
+        &self.slow
+    }
+
+    /// The same, to be changed.
+    pub fn slow_mut(&mut self) -> &mut SlowErrors {
+        &mut self.slow
+    }
+
+    /// Forgets all steps.
+    pub fn reset(&mut self) {
+        if let Some(bank) = &mut self.bank {
+            bank.reset();
+        }
+        self.signals.iter_mut().for_each(|signal| signal.statistic = 0.0);
+        self.velocity.reset();
+        self.slow.reset();
+        self.friction.reset();
+        self.joints.fill(0.0);
+        (self.next, self.started, self.suspicious) = (0, false, false);
+    }
+}
+
+/// The largest share must lie over the threshold.
+const ALMOST: f64 = 0.999;

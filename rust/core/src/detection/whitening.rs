@@ -1,0 +1,89 @@
+//! A torque over its covariance: `r' S^-1 r` by Cholesky's factors.
+
+/// The lower Cholesky factor of a covariance.
+#[derive(Debug, Clone)]
+pub(crate) struct Whitening {
+    size: usize,
+    /// Rows of the factor; the reciprocal of each diagonal entry in its place.
+    factor: Vec<f64>,
+    /// Of each torque (Nm).
+    deviations: Vec<f64>,
+    whitened: Vec<f64>,
+}
+
+impl Whitening {
+    /// Space for so many torques; they count for nothing until a covariance is set.
+    pub fn new(size: usize) -> Self {
+        Whitening {
+            size,
+            factor: vec![0.0; size * size],
+            deviations: vec![f64::INFINITY; size],
+            whitened: vec![0.0; size],
+        }
+    }
+
+    /// Sets the covariance by its entries up to the diagonal: `covariance(i)` writes row `i`. It must have a positive
+    /// diagonal; a pivot that rounding makes negative is taken for a small share of its diagonal entry.
+    #[inline]
+    pub fn set(&mut self, mut covariance: impl FnMut(usize, &mut [f64])) {
+        let n = self.size;
+        for i in 0..n {
+            let (above, rest) = self.factor.split_at_mut(i * n);
+            let row = &mut rest[..=i];
+            covariance(i, row);
+            let variance = row[i];
+            self.deviations[i] = variance.sqrt();
+            for j in 0..i {
+                let other = &above[j * n..=j * n + j];
+                let sum: f64 = row[..j].iter().zip(other).map(|(a, b)| a * b).sum();
+                row[j] = (row[j] - sum) * other[j];
+            }
+            let (before, last) = row.split_at_mut(i);
+            let pivot = variance - before.iter().map(|a| a * a).sum::<f64>();
+            last[0] = 1.0 / pivot.max(SMALLEST_PIVOT * variance).sqrt();
+        }
+    }
+
+    /// `r' S^-1 r`.
+    #[inline]
+    pub fn squared_norm(&mut self, torque: &[f64]) -> f64 {
+        let n = self.size;
+        let mut sum = 0.0;
+        for (i, r) in torque.iter().enumerate() {
+            let row = &self.factor[i * n..=i * n + i];
+            let known: f64 = row[..i].iter().zip(&self.whitened).map(|(a, b)| a * b).sum();
+            let value = (r - known) * row[i];
+            self.whitened[i] = value;
+            sum += value * value;
+        }
+        sum
+    }
+
+    /// The standard deviation of each torque (Nm).
+    pub fn deviations(&self) -> &[f64] {
+        &self.deviations
+    }
+}
+
+/// Rounding leaves this share of a diagonal entry.
+const SMALLEST_PIVOT: f64 = 1e-12;
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+
+    use super::*;
+
+    #[test]
+    fn it_is_the_quadratic_form() {
+        let root = DMatrix::from_fn(5, 5, |i, j| ((3 * i + 7 * j) as f64).sin() + if i == j { 2.0 } else { 0.0 });
+        let covariance = &root * root.transpose();
+        let torque = DVector::from_fn(5, |i, _| 1.0 + i as f64);
+        let mut whitening = Whitening::new(5);
+        assert_eq!(whitening.squared_norm(torque.as_slice()), 0.0);
+        whitening.set(|i, row| row.iter_mut().enumerate().for_each(|(j, value)| *value = covariance[(i, j)]));
+        let expected = torque.dot(&covariance.clone().cholesky().expect("positive").solve(&torque));
+        assert!((whitening.squared_norm(torque.as_slice()) / expected - 1.0).abs() < 1e-12);
+        assert!((whitening.deviations()[2] - covariance[(2, 2)].sqrt()).abs() < 1e-15);
+    }
+}
