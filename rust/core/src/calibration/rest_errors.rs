@@ -254,7 +254,7 @@ fn tails(
                 (since, window) = (0.0, 0.0);
             }
             test.advance(observer, Step::Of(dt));
-            test.evaluate(&[]);
+            test.evaluate(&[], false);
             test.follow(&[], dt, starts || test.suspicious());
             since += dt;
             if since < SETTLED {

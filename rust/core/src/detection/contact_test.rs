@@ -18,7 +18,7 @@ pub(crate) const LARGEST_STEP: f64 = 0.6;
 /// Time constant with which slow errors are followed (s): longer than a push by a person, shorter than the time over which
 /// gears settle and masses move.
 pub(crate) const FOLLOW_TIME: f64 = 3.0;
-/// Slow errors are not followed beyond this share of the level: what grows slowly may be a contact.
+/// Beyond this share of the level a contact goes on, and slow errors are not followed: what grows slowly may be one.
 const SUSPICIOUS: f64 = 0.5;
 /// A joint is over its own threshold beyond so many standard deviations.
 const JOINT_LEVEL: f64 = 5.0;
@@ -161,9 +161,11 @@ impl ContactTest {
         self.started = true;
     }
 
-    /// Compares the torques without bias with their errors; `torque` `(nv,)` is the one to look at without a bank.
+    /// Compares the torques without bias with their errors, with a lower level where a contact goes on; `torque` `(nv,)` is
+    /// the one to look at without a bank.
     #[inline]
-    pub fn evaluate(&mut self, torque: &[f64]) {
+    pub fn evaluate(&mut self, torque: &[f64], in_contact: bool) {
+        let share = if in_contact { SUSPICIOUS } else { 1.0 };
         let Self { bank, signals, slow, without_bias, joints, .. } = self;
         self.suspicious = false;
         joints.fill(0.0);
@@ -174,7 +176,7 @@ impl ContactTest {
             }
             signal.statistic = signal.whitening.squared_norm(without_bias);
             self.suspicious |= signal.statistic > SUSPICIOUS * signal.level;
-            if signal.statistic <= signal.level {
+            if signal.statistic <= share * signal.level {
                 continue;
             }
             // Errors that are not Gaussian widen the thresholds of single joints as much as that of the statistic.
@@ -204,6 +206,11 @@ impl ContactTest {
     /// The torque that slow errors are followed by, `torque` without a bank.
     pub fn slowest<'a>(&'a self, torque: &'a [f64]) -> &'a [f64] {
         self.bank.as_ref().map_or(torque, |bank| &bank.torques()[0])
+    }
+
+    /// The slowest gain of the bank (1/s); none without one.
+    pub fn slowest_gain(&self) -> Option<f64> {
+        self.bank.as_ref().map(ObserverBank::slowest_gain)
     }
 
     /// Whether one is so large that slow errors are not followed.

@@ -12,7 +12,9 @@ const FEWEST_SAMPLES: u64 = 5;
 /// Still: within this part of the threshold of its mean so far, every joint.
 const STILL_BAND: f64 = 0.5;
 /// A torque that does not stand still, of an arm that moves on, has ended when it stayed a remainder for this long (s),
-const LOW_TIME: f64 = 0.3;
+const LOW_TIME: f64 = 0.4;
+/// of which the last part tells what is left, when the observer has forgotten the contact (s),
+const LEFT_TIME: f64 = 0.2;
 /// and fell to this share of its greatest norm.
 const LOW_SHARE: f64 = 0.3;
 /// A joint counts as loaded by at least this share of the whole contact's greatest torque: gears and sensors also answer
@@ -119,7 +121,7 @@ impl ReleaseDetector {
             return false;
         }
         self.low_time += dt;
-        let share = (dt / self.low_time).min(1.0);
+        let share = (dt / (self.low_time - (LOW_TIME - LEFT_TIME)).max(dt)).min(1.0);
         self.low_mean.iter_mut().zip(torque).for_each(|(mean, torque)| *mean += share * (torque - *mean));
         self.low_time >= LOW_TIME
     }

@@ -94,7 +94,7 @@ impl ContactMonitor {
             options.dt,
         )?;
         let greatest_bias = options.greatest_bias(&threshold)?;
-        let release = ReleaseDetector::new(options.release_rule(&robot, &threshold)?);
+        let release = ReleaseDetector::new(options.release_rule(&robot, &options.release_threshold(&robot, &test, &threshold)?)?);
         let tracker = |constant| BiasTracker::new(constant, greatest_bias);
         let isolator = ContactIsolator::new(robot.clone(), &options.isolation)?;
         let sensors = options.isolation.sensors.len();
@@ -209,7 +209,7 @@ impl ContactMonitor {
         *remainder_learned = false;
         leave_out(sensing, collision_torque, Some(test.slow().bias()));
         test.advance(observer, step);
-        test.evaluate(collision_torque);
+        test.evaluate(collision_torque, detector.collision());
         let touched = detector.collision() || felt || test.suspicious();
         if touched && !new {
             release.interrupt();
@@ -220,7 +220,7 @@ impl ContactMonitor {
                 test.slow_mut().set(release.remainder());
                 release.reset();
                 detector.reset();
-                test.evaluate(collision_torque);
+                test.evaluate(collision_torque, false);
                 *remainder_learned = true;
             }
         } else {

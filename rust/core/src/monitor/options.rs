@@ -121,6 +121,24 @@ impl MonitorOptions {
         Ok(options)
     }
 
+    /// The thresholds `(nv,)` for the end of a contact: those of the slowest gain of a test, which sees more than one at the
+    /// observer's gain.
+    pub(super) fn release_threshold(
+        &self,
+        corrected: &Robot,
+        test: &Option<ContactTest>,
+        threshold: &[f64],
+    ) -> Result<Vec<f64>> {
+        match (&self.calibration, test.as_ref().and_then(ContactTest::slowest_gain)) {
+            (Some(calibration), Some(gain)) => {
+                let (_, threshold) =
+                    calibration.noise_and_threshold(corrected, &vec![gain; corrected.nv()], self.dt)?;
+                Ok(threshold)
+            }
+            _ => Ok(threshold.to_vec()),
+        }
+    }
+
     /// The rule for the end of a contact, with checked thresholds `(nv,)`.
     pub(super) fn release_rule(&self, robot: &Robot, threshold: &[f64]) -> Result<ReleaseRule> {
         if let Some(time) = self.bias_settle_time.filter(|time| !(time.is_finite() && *time > 0.0)) {

@@ -44,6 +44,11 @@ impl ObserverBank {
         &self.torques
     }
 
+    /// The first gain (1/s).
+    pub fn slowest_gain(&self) -> f64 {
+        self.gains[0]
+    }
+
     /// Forgets all steps.
     pub fn reset(&mut self) {
         self.torques.iter_mut().for_each(|torque| torque.fill(0.0));
