@@ -25,6 +25,11 @@ const BEFORE_TIME: f64 = 0.08;
 /// A joint that started and stopped less often keeps this share of its Coulomb friction as the error.
 const FEWEST_EVENTS: usize = 4;
 const UNKNOWN_SHARE: f64 = 0.2;
+/// Friction at a start or stop is never known better than to this share of it.
+const KNOWN_SHARE: f64 = 0.1;
+/// The errors of starts and stops are not Gaussian, and joints stop together: so many root mean squares count as one
+/// standard deviation.
+const HEAVY_TAIL: f64 = 1.5;
 /// Slow errors change over times between these (s).
 const TIMES: [f64; 2] = [0.02, 20.0];
 /// At least this share of the mean square of slow errors is left after following them.
@@ -77,7 +82,10 @@ pub(super) fn rest_errors(
     }
     noise.friction = (0..robot.nv())
         .map(|j| match events(&stretches, j, spacing) {
-            Some(square) => (square / FrictionErrors::response(event_gain)).sqrt(),
+            Some(square) => {
+                let deviation = HEAVY_TAIL * (square / FrictionErrors::response(event_gain)).sqrt();
+                deviation.max(KNOWN_SHARE * coulomb[j])
+            }
             None => UNKNOWN_SHARE * coulomb[j],
         })
         .collect();
