@@ -195,10 +195,10 @@ impl ContactTest {
     /// [`ContactTest::evaluate`].
     #[inline]
     pub fn follow(&mut self, torque: &[f64], dt: f64, touched: bool) {
+        let torque = self.bank.as_ref().map_or(torque, |bank| &bank.torques()[0]);
         if touched {
-            self.slow.lose(dt);
+            self.slow.lose(torque, dt);
         } else {
-            let torque = self.bank.as_ref().map_or(torque, |bank| &bank.torques()[0]);
             self.slow.follow(torque, dt);
         }
     }

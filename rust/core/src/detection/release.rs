@@ -51,6 +51,7 @@ pub(crate) struct ReleaseDetector {
     still_time: f64,
     /// For how long the torque has been as low as a remainder (s), and its mean since.
     low_time: f64,
+    low_samples: u64,
     low_mean: Vec<f64>,
     /// Whether the torque that ended the contact did not stand still.
     moving: bool,
@@ -69,6 +70,7 @@ impl ReleaseDetector {
             samples: 0,
             still_time: 0.0,
             low_time: 0.0,
+            low_samples: 0,
             low_mean: vec![0.0; nv],
             moving: false,
             peak: vec![0.0; nv],
@@ -117,13 +119,14 @@ impl ReleaseDetector {
         let left = norms(torque.iter().zip(bias).map(|(torque, bias)| torque - bias), &self.rule.is_force);
         let low = left.iter().zip(&self.greatest).all(|(left, greatest)| *left <= LOW_SHARE * greatest);
         if !(low && self.is_remainder(torque, bias)) {
-            self.low_time = 0.0;
+            (self.low_time, self.low_samples) = (0.0, 0);
             return false;
         }
         self.low_time += dt;
+        self.low_samples += 1;
         let share = (dt / (self.low_time - (LOW_TIME - LEFT_TIME)).max(dt)).min(1.0);
         self.low_mean.iter_mut().zip(torque).for_each(|(mean, torque)| *mean += share * (torque - *mean));
-        self.low_time >= LOW_TIME
+        self.low_time >= LOW_TIME && self.low_samples >= FEWEST_SAMPLES
     }
 
     fn find_peaks(&mut self, torque: &[f64], bias: &[f64]) {
@@ -176,13 +179,13 @@ impl ReleaseDetector {
     /// Nothing is known of the torque between the last sample and the next.
     pub fn interrupt(&mut self) {
         self.samples = 0;
-        self.low_time = 0.0;
+        (self.low_time, self.low_samples) = (0.0, 0);
     }
 
     /// Prepares for another contact.
     pub fn reset(&mut self) {
         self.samples = 0;
-        self.low_time = 0.0;
+        (self.low_time, self.low_samples) = (0.0, 0);
         self.peak.fill(0.0);
         self.greatest = [0.0; 2];
     }

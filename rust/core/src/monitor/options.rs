@@ -6,7 +6,7 @@ use crate::calibration::Calibration;
 use crate::detection::{ContactTest, ReleaseRule, FOLLOW_TIME};
 use crate::error::{Error, Result};
 use crate::isolation::IsolatorOptions;
-use crate::robot::{JointKind, Robot};
+use crate::robot::Robot;
 
 /// Settings of a [`ContactMonitor`](super::ContactMonitor).
 ///
@@ -158,7 +158,7 @@ impl MonitorOptions {
             settle_time: self.bias_settle_time,
             hysteresis,
             threshold: threshold.to_vec(),
-            is_force: robot.joint_kinds().flat_map(forces_of).copied().collect(),
+            is_force: robot.forces(),
         })
     }
 
@@ -171,15 +171,6 @@ impl MonitorOptions {
             ));
         }
         Ok(threshold.iter().map(|threshold| self.bias_limit * threshold).collect())
-    }
-}
-
-/// Which of a joint's torques are forces.
-fn forces_of(kind: JointKind) -> &'static [bool] {
-    match kind {
-        JointKind::FreeFlyer => &[true, true, true, false, false, false],
-        JointKind::Prismatic => &[true],
-        JointKind::Revolute | JointKind::Continuous => &[false],
     }
 }
 

@@ -244,6 +244,16 @@ impl Robot {
         self.ancestry.leads_to(joint, body)
     }
 
+    /// By velocity variable: whether its torque is a force (N).
+    pub(crate) fn forces(&self) -> Vec<bool> {
+        let of_joint = |kind: JointKind| match kind {
+            JointKind::FreeFlyer => &[true, true, true, false, false, false][..],
+            JointKind::Prismatic => &[true],
+            JointKind::Revolute | JointKind::Continuous => &[false],
+        };
+        self.joint_kinds().flat_map(of_joint).copied().collect()
+    }
+
     /// Number of bodies, the world included.
     pub fn body_count(&self) -> usize {
         self.bodies.len()

@@ -25,6 +25,10 @@ pub(crate) struct SlowNoise {
     pub model_time: Vec<f64>,
     /// From one start to the next (Nm squared).
     pub bias: Vec<f64>,
+    /// Share of a contact's torque.
+    pub relative: Vec<f64>,
+    /// Whether a joint's torque is a force (N).
+    pub is_force: Vec<bool>,
 }
 
 impl NoiseModel {
@@ -45,6 +49,8 @@ impl NoiseModel {
                 model: squares("noise.model", &self.model)?,
                 model_time: robot.per_velocity("noise.model_time", &self.model_time)?,
                 bias: squares("noise.bias", &self.bias)?,
+                relative: robot.per_velocity("noise.relative", &self.relative)?,
+                is_force: robot.forces(),
             },
         })
     }
