@@ -43,6 +43,13 @@ pub struct Calibration {
     pub torque_is_external: bool,
     /// Friction inside the measured torque.
     pub friction: Friction,
+    /// Share of a change of the torque that gears keep back: three times this share while the torque has changed by at most
+    /// two widths since it turned round, twice up to six, once up to eighteen, none beyond.
+    pub hysteresis: Vec<f64>,
+    /// One standard deviation.
+    pub hysteresis_std: Vec<f64>,
+    /// The width (Nm; N).
+    pub hysteresis_width: Vec<f64>,
     /// One standard deviation of each Coulomb friction (Nm; N).
     pub coulomb_std: Vec<f64>,
     /// One standard deviation of each viscous friction (Nm s/rad; N s/m).
@@ -187,6 +194,9 @@ impl Calibration {
             torque_scale: vec![1.0; robot.nv()],
             torque_is_external: false,
             friction: Friction { coulomb: zeros.clone(), viscous: zeros.clone(), reversal },
+            hysteresis: zeros.clone(),
+            hysteresis_std: zeros.clone(),
+            hysteresis_width: zeros.clone(),
             coulomb_std: zeros.clone(),
             viscous_std: zeros.clone(),
             armature: armature(robot),
@@ -233,6 +243,9 @@ impl Calibration {
             ("coulomb_std", &self.coulomb_std, positive(&self.coulomb_std)),
             ("viscous_std", &self.viscous_std, positive(&self.viscous_std)),
             ("residual", &self.residual, positive(&self.residual)),
+            ("hysteresis", &self.hysteresis, self.hysteresis.iter().all(|x| (0.0..1.0).contains(x))),
+            ("hysteresis_std", &self.hysteresis_std, positive(&self.hysteresis_std)),
+            ("hysteresis_width", &self.hysteresis_width, positive(&self.hysteresis_width)),
             ("torque_scale", &self.torque_scale, !self.torque_scale.contains(&0.0)),
             ("friction.coulomb", &self.friction.coulomb, positive(&self.friction.coulomb)),
             ("friction.viscous", &self.friction.viscous, positive(&self.friction.viscous)),
@@ -307,8 +320,7 @@ impl Calibration {
 
     /// What corrects velocities and torques.
     pub(crate) fn torque_model(&self) -> TorqueModel {
-        let delays = [self.velocity_delay, self.torque_delay];
-        TorqueModel::new(&self.torque_scale, &self.torque_bias, &self.friction, delays)
+        TorqueModel::new(self)
     }
 }
 

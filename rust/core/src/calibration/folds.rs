@@ -1,6 +1,6 @@
 //! Held-out blocks of a log: they choose how far bodies may differ from the description, and say what is left.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use super::normal::{residual, Joints, Normal};
 use super::rows::Row;
@@ -8,7 +8,7 @@ use super::solve::{solve, Solution};
 use super::unknowns::Unknowns;
 
 /// Consecutive blocks; each is judged by what the others teach.
-const BLOCKS: usize = 5;
+pub(super) const BLOCKS: usize = 5;
 /// Shares by which bodies may differ from the description: from what no description knows better, to anything.
 pub(super) const CHANGES: [f64; 6] = [0.02, 0.05, 0.1, 0.3, 1.0, 3.0];
 /// Share of a block at each end that is not fitted when others are judged.
@@ -25,7 +25,8 @@ pub(super) struct HeldOut {
     pub change: f64,
     /// By row, `(nv,)` (Nm).
     pub residuals: Vec<DVector<f64>>,
-    /// By block, what the others teach.
+    /// By block, what the others teach: unknowns, and what they add to the description.
+    pub solutions: Vec<DVector<f64>>,
     pub corrections: Vec<DVector<f64>>,
 }
 
@@ -45,15 +46,21 @@ pub(super) fn enough(rows: usize) -> bool {
     rows >= BLOCKS * FEWEST_ROWS
 }
 
-/// The held-out residuals of the best choice among [`CHANGES`].
-pub(super) fn hold_out(unknowns: &Unknowns, joints: &Joints, rows: &[Row], used: &[bool]) -> Option<HeldOut> {
+/// The held-out residuals of the best choice among some of [`CHANGES`].
+pub(super) fn hold_out(
+    unknowns: &Unknowns,
+    joints: &Joints,
+    rows: &[Row],
+    used: &[bool],
+    changes: &[f64],
+) -> Option<HeldOut> {
     let block = |k: usize| {
         let of_block = move |(row, _): &(usize, &Row)| used[*row] && is_inside(*row, rows.len(), k);
         Normal::of(unknowns, joints, rows.iter().enumerate().filter(of_block).map(|(_, row)| row))
     };
     let blocks: Vec<Normal> = (0..BLOCKS).map(block).collect();
     let others: Vec<Normal> = (0..BLOCKS).map(|k| sum(&blocks, Some(k))).collect();
-    let tried = CHANGES.into_iter().filter_map(|change| {
+    let tried = changes.iter().filter_map(|&change| {
         let fitted = others.iter().map(|normal| solve(unknowns, normal, change));
         let fitted = fitted.collect::<Option<Vec<Solution>>>()?;
         let corrections: Vec<DVector<f64>> =
@@ -63,7 +70,8 @@ pub(super) fn hold_out(unknowns: &Unknowns, joints: &Joints, rows: &[Row], used:
             DVector::from_fn(joints.weights.len(), |j, _| residual(unknowns, joints, row, j, correction))
         };
         let residuals: Vec<DVector<f64>> = rows.iter().enumerate().map(left).collect();
-        Some((scores(&residuals, used), HeldOut { change, residuals, corrections }))
+        let solutions = fitted.into_iter().map(|solution| solution.z).collect();
+        Some((scores(&residuals, used), HeldOut { change, residuals, solutions, corrections }))
     });
     nearest_as_good(tried.collect(), joints.weights.len())
 }
@@ -83,19 +91,17 @@ fn nearest_as_good(mut tried: Vec<(Vec<f64>, HeldOut)>, joints: usize) -> Option
     Some(tried.swap_remove(chosen).1)
 }
 
-/// The fit of all rows, and the covariance of its unknowns.
+/// The fit of all rows.
 pub(super) fn fit(
     unknowns: &Unknowns,
     joints: &Joints,
     rows: &[Row],
     used: &[bool],
     change: f64,
-) -> Option<(Solution, DMatrix<f64>)> {
+) -> Option<Solution> {
     let kept = rows.iter().zip(used).filter(|(_, used)| **used).map(|(row, _)| row);
     let normal = Normal::of(unknowns, joints, kept);
-    let solution = solve(unknowns, &normal, change)?;
-    let covariance = solution.covariance(unknowns, &normal)?;
-    Some((solution, covariance))
+    solve(unknowns, &normal, change)
 }
 
 /// All blocks but one.
