@@ -92,6 +92,30 @@ def test_bias_friction_and_rotors() -> None:
         assert (std > 0.0).all()
 
 
+def kept_back(torque: np.ndarray, width: np.ndarray) -> np.ndarray:
+    """What one element that follows the torque up to a width either way holds."""
+    state, held = np.zeros(torque.shape[1]), np.zeros_like(torque)
+    for row in range(1, len(torque)):
+        state = np.clip(state + torque[row] - torque[row - 1], -width, width)
+        held[row] = state
+    return held
+
+
+def test_hysteresis_of_gears_is_found_and_corrected() -> None:
+    true = torques() + 0.3 + 0.5 * np.tanh(motion().v / 0.01)
+    # Another form than the one that is fitted: one element.
+    tau = true - 0.1 * kept_back(true, 0.4 * true.std(axis=0)) + white(0.02)
+    calibration = cs.calibrate(IIWA, log(tau))
+    assert (calibration.hysteresis > 0.02).sum() >= 5
+    error = np.abs(calibration.torque_bias - 0.3)
+    assert (error < 2.0 * calibration.torque_bias_std).sum() >= 6
+    assert calibration.inertial_change <= 0.3
+    without = cs.calibrate(IIWA, log(true + white(0.02)))
+    assert (without.hysteresis < 0.01).all()
+    # The share stands for what a torque that is not trimmed to a per cent, or another form, may add.
+    assert (calibration.noise.relative != 0.05).sum() >= 5
+
+
 def test_a_payload_is_found() -> None:
     loaded = IIWA.with_payload("iiwa_link_7", 1.5, [0.02, -0.03, 0.08], 2e-3 * np.eye(3))
     payload = cs.calibrate(IIWA, log(torques(loaded) + white(0.05)), payload_link="iiwa_link_7").payload

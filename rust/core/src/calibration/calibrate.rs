@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::contacts::without_contact;
 use super::delay::velocity_delay;
-use super::folds::{enough, fit, hold_out, HeldOut, CHANGES};
+use super::folds::{enough, fit, hold_out, HeldOut, CHANGES, USUAL_CHANGE};
 use super::hysteresis::{USUAL_WIDTH, WIDTHS};
 use super::log::Log;
 use super::noise::white;
@@ -29,6 +29,8 @@ const ROWS_PER_TIME: f64 = 4.0;
 const MEMORY: usize = 1 << 28;
 /// Rounds in which weights, left-out contacts and reversals of friction settle.
 const ROUNDS: usize = 4;
+/// The first of these settle shapes alone: bodies stay near the description, and joints keep hysteresis.
+const UNSETTLED: usize = 2;
 /// After a contact the filters need so many time constants to forget it.
 const FORGOTTEN: f64 = 3.0;
 /// Rows that are further apart say nothing of inertia (s).
@@ -106,7 +108,7 @@ impl Fit {
         let margin = (FORGOTTEN / filter.gain / filter.spacing).ceil() as usize;
         let failed =
             || Error::input("log", "cannot be fitted: joints must move, and torques must be of a usual size");
-        let mut held_out = hold_out(&unknowns, &joints, &rows, &used, &CHANGES[..1]).ok_or_else(failed)?;
+        let mut held_out = hold_out(&unknowns, &joints, &rows, &used, &USUAL_CHANGE).ok_or_else(failed)?;
         for round in 0..ROUNDS {
             used = without_contact(&held_out.residuals, margin);
             let choice = Choice {
@@ -117,9 +119,9 @@ impl Fit {
                 held_out: &held_out,
                 clear: &clear,
             };
-            joints.shapes = choice.shapes();
+            joints.shapes = choice.shapes(round >= UNSETTLED);
             joints.weights = (0..nv).map(|j| weight(&held_out.residuals, &used, j)).collect();
-            let changes = if round == 0 { &CHANGES[..1] } else { &CHANGES[..] };
+            let changes = if round + 1 < UNSETTLED { &USUAL_CHANGE[..] } else { &CHANGES };
             held_out = hold_out(&unknowns, &joints, &rows, &used, changes).ok_or_else(failed)?;
         }
         let solution = fit(&unknowns, &joints, &rows, &used, held_out.change).ok_or_else(failed)?;

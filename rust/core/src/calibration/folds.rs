@@ -11,6 +11,8 @@ use super::unknowns::Unknowns;
 pub(super) const BLOCKS: usize = 5;
 /// Shares by which bodies may differ from the description: from what no description knows better, to anything.
 pub(super) const CHANGES: [f64; 6] = [0.02, 0.05, 0.1, 0.3, 1.0, 3.0];
+/// How far bodies are off as a rule.
+pub(super) const USUAL_CHANGE: [f64; 1] = [0.1];
 /// Share of a block at each end that is not fitted when others are judged.
 const MARGIN: f64 = 0.125;
 /// Mean squares that differ by so little (share, by joint) are equally good.

@@ -23,7 +23,7 @@ const TRIMMED: f64 = 0.05;
 /// What trimming that share takes from the mean square of Gaussian numbers.
 const TRIMMED_SQUARE: f64 = 0.7587;
 /// Error in proportion to the contact's own torque: hysteresis and scale of gears, which no free motion shows.
-const RELATIVE: f64 = 0.05;
+pub(super) const RELATIVE: f64 = 0.05;
 /// Steps of coordinate descent; each unknown has its own row in most equations.
 const STEPS: usize = 100;
 /// Noise of a velocity that was low-passed at 60 Hz is so many times its first differences at 1 kHz.

@@ -9,14 +9,15 @@ use super::unknowns::{Unknowns, ARMATURE, BIAS, COULOMB, HYSTERESIS, TERMS, VISC
 
 const FIRST_FRICTION: usize = 1;
 const AFTER_FRICTION: usize = FIRST_FRICTION + REVERSALS.len();
-const FIRST_HYSTERESIS: usize = AFTER_FRICTION + 3;
+const TORQUE: usize = AFTER_FRICTION + 3;
+const FIRST_HYSTERESIS: usize = TORQUE + 1;
 
-/// The terms of each row: bias, Coulomb friction of each reversal, viscous friction, rotor inertia, rate of the torque,
-/// hysteresis of each width.
+/// The terms of each row: bias, Coulomb friction of each reversal, viscous friction, rotor inertia, rate of the torque, the
+/// torque, hysteresis of each width.
 pub(super) fn terms() -> Vec<Term> {
     let mut terms = vec![Term::Bias];
     terms.extend(REVERSALS.map(Term::Coulomb));
-    terms.extend([Term::Viscous, Term::Armature, Term::TorqueRate]);
+    terms.extend([Term::Viscous, Term::Armature, Term::TorqueRate, Term::Torque]);
     terms.extend(WIDTHS.map(Term::Hysteresis));
     terms
 }
@@ -92,8 +93,18 @@ pub(super) fn own_terms(row: &Row, joint: usize, shape: Shape) -> [f64; TERMS] {
     terms[COULOMB] = row.terms[(joint, FIRST_FRICTION + shape.friction)];
     terms[VISCOUS] = row.terms[(joint, AFTER_FRICTION)];
     terms[ARMATURE] = row.terms[(joint, AFTER_FRICTION + 1)];
-    terms[HYSTERESIS] = shape.hysteresis.map_or(0.0, |width| row.terms[(joint, FIRST_HYSTERESIS + width)]);
+    terms[HYSTERESIS] = shape.hysteresis.map_or(0.0, |width| kept_back(row, joint, width));
     terms
+}
+
+/// What hysteresis of one width keeps back in a row, for a share of one.
+pub(super) fn kept_back(row: &Row, joint: usize, width: usize) -> f64 {
+    row.terms[(joint, FIRST_HYSTERESIS + width)]
+}
+
+/// The measured torque of a row.
+pub(super) fn torque(row: &Row, joint: usize) -> f64 {
+    row.terms[(joint, TORQUE)]
 }
 
 /// The columns that are not zero, with their values.

@@ -10,9 +10,10 @@ use super::contacts::stretches;
 use super::folds::mean_square;
 use super::hysteresis::WIDTHS;
 use super::log::Log;
-use super::noise::{estimate, Judged};
+use super::noise::{estimate, Judged, RELATIVE};
 use super::notes::{notes, JointFacts};
 use super::torque_model::{Friction, REVERSALS};
+use super::uncertainty::TORQUE_SCALE;
 use super::unknowns::{ARMATURE, BIAS, COULOMB, HYSTERESIS, VISCOUS};
 use super::{Calibration, CalibrationOptions, Payload};
 use crate::error::Result;
@@ -21,6 +22,9 @@ use crate::torque::NoiseModel;
 
 /// Coulomb friction is not the same at all speeds: one standard deviation, as a share of it.
 const FRICTION_SHAPE: f64 = 0.01;
+/// Of a torque as small as friction, hysteresis of another form keeps back from none to six shares, evenly likely, where the
+/// fit says three: one standard deviation, in shares.
+const FORM: f64 = 1.73;
 /// A centre of mass that is less certain is unknown (m).
 const UNKNOWN: f64 = 1.0;
 
@@ -44,7 +48,7 @@ impl Fit {
         let found = self.found(robot, &self.solution.z, options);
         // Friction of another shape than the one fitted changes both coefficients.
         let shape = |j: usize| {
-            let error = FRICTION_SHAPE * found.friction.coulomb[j];
+            let error = FRICTION_SHAPE.hypot(FORM * found.hysteresis[j]) * found.friction.coulomb[j];
             let units = &self.unknowns.term_units[j];
             [error, error * units[VISCOUS] / units[COULOMB]]
         };
@@ -62,7 +66,7 @@ impl Fit {
             armature_std: deviation(ARMATURE),
             payload: found.payload.clone().map(|payload| self.with_uncertainty(payload)),
             inertial_change: self.held_out.change,
-            noise: self.noise(robot, log, options, step)?,
+            noise: NoiseModel { relative: self.relative(nv), ..self.noise(robot, log, options, step)? },
             residual: (0..nv).map(|j| mean_square(&self.held_out.residuals, &self.used, j).sqrt()).collect(),
             false_alarms_per_hour: options.false_alarms_per_hour,
             notes: self.notes(robot, log, &contacts),
@@ -150,6 +154,14 @@ impl Fit {
             com_std: std::array::from_fn(|axis| com_variance(axis).max(0.0).sqrt().min(UNKNOWN)),
             ..payload
         }
+    }
+
+    /// The error in proportion to a contact's own torque: what hysteresis of another form would keep back of a small one, and the
+    /// scale of the sensor; the usual where the log shows no hysteresis.
+    fn relative(&self, nv: usize) -> Vec<f64> {
+        let share = |j: usize| self.solution.z[self.unknowns.term(j, HYSTERESIS)];
+        let relative = |j: usize| if share(j) > 0.0 { TORQUE_SCALE.hypot(FORM * share(j)) } else { RELATIVE };
+        (0..nv).map(relative).collect()
     }
 
     /// The noise, from blocks that were not fitted.

@@ -26,11 +26,12 @@ pub(super) struct Choice<'a> {
 impl Choice<'_> {
     /// The shapes that leave least on held-out blocks, when the joints' own terms are fitted anew. Hysteresis is kept only
     /// where it leaves less by more than one standard error over the blocks.
-    pub fn shapes(&self) -> Vec<Shape> {
-        (0..self.joints.weights.len()).map(|joint| self.shape(joint)).collect()
+    /// All joints have it that may as long as shapes are not yet `settled`: without it, inertias explain what it does.
+    pub fn shapes(&self, settled: bool) -> Vec<Shape> {
+        (0..self.joints.weights.len()).map(|joint| self.shape(joint, settled)).collect()
     }
 
-    fn shape(&self, joint: usize) -> Shape {
+    fn shape(&self, joint: usize, settled: bool) -> Shape {
         let now = self.joints.shapes[joint];
         let others = (0..REVERSALS.len()).map(|friction| Shape { friction, ..now });
         let (with, _) = self.best(joint, now, others);
@@ -38,6 +39,7 @@ impl Choice<'_> {
         let widths = self.clear[joint]..WIDTHS.len();
         let (best, left) = self.best(joint, without, widths.map(|k| Shape { hysteresis: Some(k), ..with }));
         match self.left_of(joint, without) {
+            _ if !settled => Shape { hysteresis: best.hysteresis.or(now.hysteresis), ..best },
             Some(before) if !is_less(&left, &before) => without,
             _ => best,
         }

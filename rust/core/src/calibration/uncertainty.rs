@@ -3,10 +3,11 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::folds::{mean_square, HeldOut};
-use super::normal::{columns, Joints, Normal};
+use super::hysteresis::WIDTHS;
+use super::normal::{columns, kept_back, torque, Joints, Normal};
 use super::rows::Row;
 use super::solve::{transposed_product, Solution};
-use super::unknowns::Unknowns;
+use super::unknowns::{Unknowns, HYSTERESIS};
 
 /// The longest lag of a correlation, as a part of the rows.
 const LONGEST_LAG: usize = 4;
@@ -14,6 +15,12 @@ const LONGEST_LAG: usize = 4;
 const UNCORRELATED: f64 = 0.05;
 /// Stretches of the log whose errors count as independent of each other.
 const CLUSTERS: usize = 20;
+/// Torque sensors are trimmed to about a per cent (one standard deviation). Masses that follow such an error explain it, so
+/// that no log shows it.
+pub(super) const TORQUE_SCALE: f64 = 0.01;
+/// Hysteresis levels off at another torque than the width found says: half of the way to the next width that was tried is one
+/// standard deviation.
+const HALF_WAY: f64 = 0.5;
 
 /// How much a row of one joint counts: one over its mean square, and over the number of rows that err together.
 pub(super) fn weight(residuals: &[DVector<f64>], used: &[bool], joint: usize) -> f64 {
@@ -38,7 +45,8 @@ fn correlated_rows(residuals: &[DVector<f64>], joint: usize, square: f64) -> f64
 
 /// The covariance of the unknowns. Weights assume that errors have nothing to do with the motion; what hysteresis leaves has.
 /// Where the spread of what stretches of the log pull at an unknown, by their held-out residuals, is larger, it counts
-/// instead (cluster-robust covariance: Liang and Zeger 1986).
+/// instead (cluster-robust covariance: Liang and Zeger 1986). What the scale of a torque may be off by, and hysteresis of a
+/// form that levels off earlier or later, is added as what it would move the unknowns by (consider covariance).
 pub(super) fn covariance(
     unknowns: &Unknowns,
     joints: &Joints,
@@ -67,32 +75,47 @@ pub(super) fn covariance(
         let moved = &assumed * transposed_product(&derivative, pull);
         spread += moved.component_mul(&moved);
     }
-    let jack = {
-        let b = held_out.solutions.len() as f64;
-        let mean = held_out.solutions.iter().sum::<DVector<f64>>() / b;
-        let mut s = DVector::<f64>::zeros(unknowns.len());
-        for z in &held_out.solutions {
-            let d = z - &mean;
-            s += d.component_mul(&d) * ((b - 1.0) / b);
-        }
-        s
-    };
-    let mode = std::env::var("CAL_COV").unwrap_or_default();
+    let spread = spread.zip_map(&jackknife(&held_out.solutions), f64::max);
     // What the description said keeps its part of the uncertainty.
     let wider = |k: usize| {
         let prior = assumed.row(k).component_div(&solution.units.transpose()).norm_squared();
-        let robust = spread[k] + prior;
-        let j = jack[k] + prior;
-        let r = match mode.as_str() {
-            "0" => 0.0,
-            "j" => j,
-            "jr" => j.max(robust),
-            "only" => return (robust / assumed[(k, k)]).sqrt(),
-            "onlyj" => return (j / assumed[(k, k)]).sqrt(),
-            _ => robust,
-        };
-        (r / assumed[(k, k)].max(f64::MIN_POSITIVE)).max(1.0).sqrt()
+        ((spread[k] + prior) / assumed[(k, k)].max(f64::MIN_POSITIVE)).max(1.0).sqrt()
     };
     let wider: Vec<f64> = (0..unknowns.len()).map(wider).collect();
-    Some(DMatrix::from_fn(wider.len(), wider.len(), |a, b| assumed[(a, b)] * wider[a] * wider[b]))
+    let mut covariance =
+        DMatrix::from_fn(wider.len(), wider.len(), |a, b| assumed[(a, b)] * wider[a] * wider[b]);
+    for joint in 0..joints.weights.len() {
+        let mut consider = |error: &dyn Fn(&Row) -> f64| {
+            let mut pull = DVector::zeros(unknowns.columns());
+            let mut entries = vec![];
+            for (_, row) in rows.iter().enumerate().filter(|(index, _)| used[*index]) {
+                entries.clear();
+                columns(unknowns, joints, row, joint, &mut entries);
+                let error = joints.weights[joint] * error(row);
+                entries.iter().for_each(|&(column, value)| pull[column] += error * value);
+            }
+            let moved = &assumed * transposed_product(&derivative, &pull);
+            covariance.ger(1.0, &moved, &moved, 1.0);
+        };
+        consider(&|row| TORQUE_SCALE * torque(row, joint));
+        let Some(width) = joints.shapes[joint].hysteresis else { continue };
+        let share = solution.z[unknowns.term(joint, HYSTERESIS)];
+        let size =
+            |width: usize| rows.iter().map(|row| kept_back(row, joint, width).powi(2)).sum::<f64>().sqrt();
+        for other in [width.saturating_sub(1), (width + 1).min(WIDTHS.len() - 1)] {
+            let as_large = size(width) / size(other).max(f64::MIN_POSITIVE);
+            consider(&|row| {
+                HALF_WAY * share * (as_large * kept_back(row, joint, other) - kept_back(row, joint, width))
+            });
+        }
+    }
+    Some(covariance)
+}
+
+/// The variance of each unknown by what leaving out each block changes (jackknife: Quenouille 1956).
+fn jackknife(solutions: &[DVector<f64>]) -> DVector<f64> {
+    let count = solutions.len() as f64;
+    let mean = solutions.iter().sum::<DVector<f64>>() / count;
+    let squares = solutions.iter().map(|z| (z - &mean).map(|d| d * d)).sum::<DVector<f64>>();
+    squares * ((count - 1.0) / count)
 }
