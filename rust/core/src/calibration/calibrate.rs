@@ -10,6 +10,7 @@ use super::log::Log;
 use super::noise::white;
 use super::normal::{own_terms, terms, Joints, Shape};
 use super::rows::{rows, torque_deviations, Filter, Row};
+use super::scale;
 use super::shapes::{Choice, CLEAR_OF_NOISE};
 use super::smooth::smooth_velocity;
 use super::solve::Solution;
@@ -53,8 +54,11 @@ pub fn calibrate(robot: &Robot, log: &Log<'_>, options: &CalibrationOptions) -> 
     let filter = filter_of(robot, log, step);
     let [velocity_delay, _] = velocity_delay(robot, log, step);
     let v = smooth_velocity(robot, log, velocity_delay, step);
-    let fit = Fit::of(robot, &Log { v: &v, ..*log }, options, &filter, velocity_delay)?;
-    fit.calibration(robot, log, options, step)
+    let scales = torque_scales(robot, &Log { v: &v, ..*log }, options, &filter)?;
+    let tau = multiplied(log.tau, &scales);
+    let log = Log { tau: &tau, ..*log };
+    let fit = Fit::of(robot, &Log { v: &v, ..log }, options, &filter, velocity_delay)?;
+    Ok(Calibration { torque_scale: scales, ..fit.calibration(robot, &log, options, step)? })
 }
 
 /// The rows of a log and what explains them.
@@ -79,15 +83,7 @@ impl Fit {
         filter: &Filter,
         velocity_delay: f64,
     ) -> Result<Self> {
-        let rows = rows(robot, log, filter, &terms());
-        if !enough(rows.len()) {
-            let text = format!(
-                "is too short: {:.1} s give {} rows of the fit; record at least 10 s of motion",
-                log.time[log.len() - 1] - log.time[0],
-                rows.len()
-            );
-            return Err(Error::input("log", text));
-        }
+        let rows = enough_rows(robot, log, filter)?;
         let unknowns = Unknowns::new(robot, options.payload_link, term_units(robot, log, &rows));
         let nv = robot.nv();
         let unexplained: Vec<DVector<f64>> = rows.iter().map(|row| row.unexplained.clone()).collect();
@@ -129,6 +125,37 @@ impl Fit {
             .ok_or_else(failed)?;
         Ok(Fit { unknowns, joints, rows, used, held_out, solution, covariance, velocity_delay, deviations })
     }
+}
+
+fn enough_rows(robot: &Robot, log: &Log<'_>, filter: &Filter) -> Result<Vec<Row>> {
+    let rows = rows(robot, log, filter, &terms());
+    if enough(rows.len()) {
+        return Ok(rows);
+    }
+    let text = format!(
+        "is too short: {:.1} s give {} rows of the fit; record at least 10 s of motion",
+        log.time[log.len() - 1] - log.time[0],
+        rows.len()
+    );
+    Err(Error::input("log", text))
+}
+
+/// Scale and sign of each torque.
+fn torque_scales(
+    robot: &Robot,
+    log: &Log<'_>,
+    options: &CalibrationOptions,
+    filter: &Filter,
+) -> Result<Vec<f64>> {
+    let unknowns = |scales: &[f64], rows: &[Row]| {
+        let tau = multiplied(log.tau, scales);
+        Unknowns::new(robot, options.payload_link, term_units(robot, &Log { tau: &tau, ..*log }, rows))
+    };
+    Ok(scale::torque_scales(&enough_rows(robot, log, filter)?, robot.nv(), unknowns))
+}
+
+fn multiplied(tau: &[f64], scales: &[f64]) -> Vec<f64> {
+    tau.iter().zip(scales.iter().cycle()).map(|(tau, scale)| tau * scale).collect()
 }
 
 /// The time between most rows (s).

@@ -17,6 +17,7 @@ mod notes;
 mod pseudo_inertia;
 mod result;
 pub(crate) mod rows;
+mod scale;
 mod shapes;
 mod smooth;
 mod solve;

@@ -97,6 +97,18 @@ pub(super) fn own_terms(row: &Row, joint: usize, shape: Shape) -> [f64; TERMS] {
     terms
 }
 
+/// A row as it would be if the measured torques were so many times larger.
+pub(super) fn scaled(row: &Row, scales: &[f64]) -> Row {
+    let mut row = row.clone();
+    for (joint, scale) in scales.iter().enumerate() {
+        row.unexplained[joint] += (scale - 1.0) * torque(&row, joint);
+        for column in (TORQUE - 1..=TORQUE).chain(FIRST_HYSTERESIS..FIRST_HYSTERESIS + WIDTHS.len()) {
+            row.terms[(joint, column)] *= scale;
+        }
+    }
+    row
+}
+
 /// What hysteresis of one width keeps back in a row, for a share of one.
 pub(super) fn kept_back(row: &Row, joint: usize, width: usize) -> f64 {
     row.terms[(joint, FIRST_HYSTERESIS + width)]

@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::folds::{block_of, HeldOut, BLOCKS};
+use super::folds::{block_of, is_less, HeldOut, BLOCKS};
 use super::hysteresis::WIDTHS;
 use super::normal::{own_terms, residual, Joints, Shape};
 use super::rows::Row;
@@ -40,7 +40,7 @@ impl Choice<'_> {
         let (best, left) = self.best(joint, without, widths.map(|k| Shape { hysteresis: Some(k), ..with }));
         match self.left_of(joint, without) {
             _ if !settled => Shape { hysteresis: best.hysteresis.or(now.hysteresis), ..best },
-            Some(before) if !is_less(&left, &before) => without,
+            Some(before) if !is_less(&left.map(f64::ln), &before.map(f64::ln)) => without,
             _ => best,
         }
     }
@@ -99,27 +99,5 @@ impl Choice<'_> {
             *left = judged.iter().map(|(own, target)| (target - own.dot(&terms)).powi(2)).sum::<f64>();
         }
         Some(left)
-    }
-}
-
-/// Whether blocks have less left, by more than one standard error of the logarithm.
-fn is_less(left: &[f64; BLOCKS], before: &[f64; BLOCKS]) -> bool {
-    let gains = left.iter().zip(before).map(|(left, before)| (before / left).ln());
-    let gains: Vec<f64> = gains.filter(|gain| gain.is_finite()).collect();
-    let count = gains.len() as f64;
-    let mean = gains.iter().sum::<f64>() / count;
-    let variance = gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    mean > (variance / count).sqrt()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_gain_counts_where_blocks_agree_on_it() {
-        assert!(is_less(&[0.5; BLOCKS], &[1.0; BLOCKS]));
-        assert!(!is_less(&[1.0; BLOCKS], &[1.0; BLOCKS]));
-        assert!(!is_less(&[0.2, 1.5, 0.9, 1.2, 1.0], &[1.0; BLOCKS]));
     }
 }
