@@ -128,6 +128,40 @@ def test_a_payload_is_found() -> None:
     assert set(payload.to_dict()) == {"link", "mass", "mass_std", "com", "com_std", "moment"}
 
 
+def test_external_torques_of_a_vendor() -> None:
+    bias = np.linspace(-0.6, 0.6, 7)
+    external = bias + 0.4 * np.tanh(motion().v / 0.01) + white(0.05)
+    given = cs.Log(motion().time, motion().q, motion().v, external_torque=external)
+    calibration = cs.calibrate(IIWA, given)
+    assert calibration.torque_is_external
+    assert not cs.calibrate(IIWA, log(torques())).torque_is_external
+    np.testing.assert_allclose(calibration.torque_bias, bias, atol=0.02)
+    np.testing.assert_allclose(calibration.friction.coulomb, 0.4, atol=0.03)
+    np.testing.assert_allclose(calibration.noise.torque, 0.05, rtol=0.2)
+    assert (np.array(calibration.noise.velocity) == 0.0).all()
+    described = cs.Calibration.of_description(IIWA)
+    assert [body.mass for body in calibration.bodies] == pytest.approx([b.mass for b in described.bodies])
+    with pytest.raises(cs.InputError, match="payload_link: needs the torques of the motors"):
+        cs.calibrate(IIWA, given, payload_link="iiwa_link_7")
+
+
+@pytest.mark.parametrize("opposite", [[3], [0, 5], list(range(7))])
+def test_opposite_torques_are_found(opposite: list[int]) -> None:
+    sign = np.ones(7)
+    sign[opposite] = -1.0
+    tau = torques() + 0.3 + 0.5 * np.tanh(motion().v / 0.01) + white(0.05)
+    calibration = cs.calibrate(IIWA, log(sign * tau))
+    np.testing.assert_array_equal(calibration.torque_scale, sign)
+    np.testing.assert_allclose(calibration.torque_bias, 0.3, atol=0.05)
+
+
+def test_a_torque_that_is_scaled_is_found() -> None:
+    factor = np.array([1.0, 1.3, 1.0, 1.0, 1.0, 1.0, 1.0])
+    tau = torques() + 0.3 + 0.5 * np.tanh(motion().v / 0.01) + white(0.05)
+    np.testing.assert_allclose(cs.calibrate(IIWA, log(tau / factor)).torque_scale, factor, rtol=0.05)
+    np.testing.assert_array_equal(cs.calibrate(IIWA, log(tau)).torque_scale, 1.0)
+
+
 def test_a_contact_is_left_out() -> None:
     tau = torques() + white(0.05)
     touched = (motion().time > 8.0) & (motion().time < 8.5)
@@ -148,7 +182,10 @@ def test_a_contact_is_left_out() -> None:
         ({"log": cs.Log([0.0, 0.1], *[np.zeros((2, 7))] * 3)}, "log: is too short"),
         ({"log": cs.Log([0.0, 0.1], np.zeros((2, 6)), *[np.zeros((2, 7))] * 2)}, "q: must be 2 rows of 7"),
         ({"log": cs.Log([0.0, 0.1], *[np.zeros((2, 7))] * 2, np.zeros((2, 1)))}, "tau: must be 2 rows of 7"),
-        ({"log": cs.Log([0.0], *[np.zeros((1, 7))] * 2, external_torque=np.zeros((1, 7)))}, "log: needs tau"),
+        (
+            {"log": cs.Log([0.0], *[np.zeros((1, 7))] * 2, external_torque=np.zeros((1, 7)))},
+            "log: must have rows",
+        ),
         ({"log": cs.Log(np.arange(3e3) * 0.01, *[np.zeros((3000, 7))] * 3)}, "log: "),
         ({"false_alarms_per_hour": 0.0}, "false_alarms_per_hour: must be positive"),
         ({"false_alarms_per_hour": "one"}, "false_alarms_per_hour: expected a number"),

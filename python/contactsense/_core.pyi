@@ -1859,6 +1859,7 @@ def _calibrate(
     tau: ArrayLike,
     false_alarms_per_hour: float,
     payload_link: str | None,
+    torque_is_external: bool,
 ) -> Calibration:
     """From the columns of a log, each flat."""
 

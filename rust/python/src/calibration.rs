@@ -315,6 +315,7 @@ pub fn _calibrate(
     tau: &Bound<'_, PyAny>,
     false_alarms_per_hour: &Bound<'_, PyAny>,
     payload_link: Option<&Bound<'_, PyAny>>,
+    torque_is_external: bool,
 ) -> PyResult<PyCalibration> {
     let py = robot.py();
     let robot = self::robot(robot)?.get().0.clone();
@@ -328,6 +329,7 @@ pub fn _calibrate(
     let options = CalibrationOptions {
         false_alarms_per_hour: number("false_alarms_per_hour", false_alarms_per_hour)?,
         payload_link: payload_link.map(link).transpose()?,
+        torque_is_external,
     };
     let (time, q) = (Vector::new("time", time)?, Vector::new("q", q)?);
     let (v, tau) = (Vector::new("v", v)?, Vector::new("tau", tau)?);

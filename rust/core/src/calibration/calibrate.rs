@@ -8,7 +8,7 @@ use super::folds::{enough, fit, hold_out, HeldOut, CHANGES, USUAL_CHANGE};
 use super::hysteresis::{USUAL_WIDTH, WIDTHS};
 use super::log::Log;
 use super::noise::white;
-use super::normal::{own_terms, terms, Joints, Shape};
+use super::normal::{of_external, own_terms, terms, Joints, Shape};
 use super::rows::{rows, torque_deviations, Filter, Row};
 use super::scale;
 use super::shapes::{Choice, CLEAR_OF_NOISE};
@@ -52,9 +52,15 @@ pub fn calibrate(robot: &Robot, log: &Log<'_>, options: &CalibrationOptions) -> 
     }
     let step = median_step(log)?;
     let filter = filter_of(robot, log, step);
-    let [velocity_delay, _] = velocity_delay(robot, log, step);
+    // What the vendor computes has its own delays.
+    let external = options.torque_is_external;
+    let velocity_delay = if external { 0.0 } else { velocity_delay(robot, log, step)[0] };
     let v = smooth_velocity(robot, log, velocity_delay, step);
-    let scales = torque_scales(robot, &Log { v: &v, ..*log }, options, &filter)?;
+    let scales = if external {
+        vec![1.0; robot.nv()]
+    } else {
+        torque_scales(robot, &Log { v: &v, ..*log }, options, &filter)?
+    };
     let tau = multiplied(log.tau, &scales);
     let log = Log { tau: &tau, ..*log };
     let fit = Fit::of(robot, &Log { v: &v, ..log }, options, &filter, velocity_delay)?;
@@ -83,7 +89,10 @@ impl Fit {
         filter: &Filter,
         velocity_delay: f64,
     ) -> Result<Self> {
-        let rows = enough_rows(robot, log, filter)?;
+        let mut rows = enough_rows(robot, log, filter)?;
+        if options.torque_is_external {
+            rows = rows.into_iter().map(of_external).collect();
+        }
         let unknowns = Unknowns::new(robot, options.payload_link, term_units(robot, log, &rows));
         let nv = robot.nv();
         let unexplained: Vec<DVector<f64>> = rows.iter().map(|row| row.unexplained.clone()).collect();
@@ -92,7 +101,11 @@ impl Fit {
         let deviations = torque_deviations(robot, log);
         let clear = (0..nv).map(|j| {
             let noise = CLEAR_OF_NOISE * white(|k| log.tau_of(k)[j], log.len());
-            WIDTHS.iter().position(|width| width * deviations[j] > noise).unwrap_or(WIDTHS.len())
+            WIDTHS
+                .iter()
+                .position(|width| width * deviations[j] > noise)
+                .filter(|_| !options.torque_is_external)
+                .unwrap_or(WIDTHS.len())
         });
         let clear: Vec<usize> = clear.collect();
         // All have hysteresis at first: without it, masses would have to explain what it does.

@@ -156,11 +156,13 @@ pub struct CalibrationOptions {
     pub false_alarms_per_hour: f64,
     /// The link that holds a payload which the description lacks.
     pub payload_link: Option<LinkIndex>,
+    /// Whether the log's torques are external torques of the vendor: then bias, friction left in them and noise are learnt.
+    pub torque_is_external: bool,
 }
 
 impl Default for CalibrationOptions {
     fn default() -> Self {
-        CalibrationOptions { false_alarms_per_hour: 1.0, payload_link: None }
+        CalibrationOptions { false_alarms_per_hour: 1.0, payload_link: None, torque_is_external: false }
     }
 }
 
@@ -171,6 +173,10 @@ impl CalibrationOptions {
             return Err(Error::input("false_alarms_per_hour", text));
         }
         match self.payload_link {
+            Some(_) if self.torque_is_external => {
+                let text = "needs the torques of the motors: an external torque says nothing of weights";
+                Err(Error::input("payload_link", text))
+            }
             Some(link) if robot[link].body == 0 => {
                 let text = format!("'{}' is fixed to the world: no joint carries its load", robot[link].name);
                 Err(Error::input("payload_link", text))

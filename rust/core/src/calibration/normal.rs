@@ -97,6 +97,16 @@ pub(super) fn own_terms(row: &Row, joint: usize, shape: Shape) -> [f64; TERMS] {
     terms
 }
 
+/// A row whose torques are external ones: no model, no rotor, no delay and no gear is between them and zero.
+pub(super) fn of_external(mut row: Row) -> Row {
+    for joint in 0..row.unexplained.len() {
+        row.unexplained[joint] = torque(&row, joint);
+    }
+    row.inertial.fill(0.0);
+    row.terms.columns_range_mut(AFTER_FRICTION + 1..).fill(0.0);
+    row
+}
+
 /// A row as it would be if the measured torques were so many times larger.
 pub(super) fn scaled(row: &Row, scales: &[f64]) -> Row {
     let mut row = row.clone();

@@ -1,7 +1,5 @@
 //! The calibration that a fit stands for.
 
-use std::sync::Arc;
-
 use nalgebra::DVector;
 
 use super::calibrate::Fit;
@@ -71,6 +69,7 @@ impl Fit {
             false_alarms_per_hour: options.false_alarms_per_hour,
             notes: self.notes(robot, log, &contacts),
             contacts,
+            torque_is_external: options.torque_is_external,
             ..found
         })
     }
@@ -180,13 +179,16 @@ impl Fit {
         let part = |(block, z): (usize, &DVector<f64>)| {
             let found = self.found(robot, z, options);
             Ok(Judged {
-                robot: Arc::new(found.corrected(robot)?),
+                robot: if options.torque_is_external { None } else { Some(found.corrected(robot)?.into()) },
                 torque: found.torque_model(),
                 rows: self.log_rows(block, solutions.len(), log.len()),
             })
         };
         let parts = solutions.iter().enumerate().map(part).collect::<Result<Vec<Judged>>>()?;
-        estimate(robot, log, &parts, &skipped, step)
+        let noise = estimate(robot, log, &parts, &skipped, step)?;
+        // No observer of ours differentiates velocities into an external torque.
+        let velocity = if options.torque_is_external { vec![0.0] } else { noise.velocity };
+        Ok(NoiseModel { velocity, ..noise })
     }
 
     /// The rows of the log that belong to a block of the fit.

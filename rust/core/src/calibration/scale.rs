@@ -33,7 +33,7 @@ pub(super) fn torque_scales(
     }
     let judge = |scales: &[f64]| judge(rows, scales, &unknowns_of);
     let mut best = judge(&scales);
-    // Signs first, as torques of which some are opposite fit no masses; then all, and last each alone.
+    // All, their signs alone, and each alone: whichever leaves least.
     let signs: Vec<f64> = found.iter().map(|k| k.signum()).collect();
     let mut trials = vec![found.clone(), signs];
     trials.extend((0..joints).filter(|j| found[*j] != 1.0).map(|j| {
@@ -41,10 +41,11 @@ pub(super) fn torque_scales(
         alone[j] = found[j];
         alone
     }));
-    for trial in trials {
-        let left = judge(&trial);
-        if better(left.as_ref(), best.as_ref()) {
-            (scales, best) = (trial, left);
+    let sum = |left: &Vec<f64>| left.iter().sum::<f64>();
+    let judged = trials.into_iter().filter_map(|trial| judge(&trial).map(|left| (trial, left)));
+    if let Some((trial, left)) = judged.min_by(|(_, a), (_, b)| sum(a).total_cmp(&sum(b))) {
+        if best.as_ref().is_none_or(|best| is_less(&left, best)) {
+            (scales, best) = (trial, Some(left));
         }
     }
     // A joint that does not need its scale has none; one whose size says nothing has only its sign.
@@ -54,20 +55,13 @@ pub(super) fn torque_scales(
             without[joint] = simpler;
             if without != scales {
                 let left = judge(&without);
-                if left.is_some() && !better(best.as_ref(), left.as_ref()) {
+                if left.as_ref().is_some_and(|left| best.as_ref().is_none_or(|best| !is_less(best, left))) {
                     (scales, best) = (without, left);
                 }
             }
         }
     }
     scales
-}
-
-fn better(left: Option<&Vec<f64>>, before: Option<&Vec<f64>>) -> bool {
-    match (left, before) {
-        (Some(left), Some(before)) => is_less(left, before),
-        (left, before) => left.is_some() && before.is_none(),
-    }
 }
 
 /// The factor that makes a joint's torque most like that of the description, friction and bias aside; one where it may be one.
