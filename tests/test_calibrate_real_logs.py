@@ -111,22 +111,3 @@ def test_opposite_torques_of_a_panda_are_found() -> None:
     for sign in (-np.ones(7), np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0, -1.0])):
         opposite = cs.Log(log.time, log.q, log.v, sign * log.tau)
         np.testing.assert_array_equal(np.sign(cs.calibrate(robot, opposite).torque_scale), sign)
-
-
-def test_external_torques_of_a_franka_at_rest() -> None:
-    robot, _ = panda()
-    with gzip.open(SHARED / "real/franka_touch/a4.csv.gz", "rt") as file:
-        rows = np.array(list(csv.reader(file))[1:], dtype=float)
-    # Well away from every touch.
-    touched = np.convolve(rows[:, -1] > 0.0, np.ones(401), mode="same") > 0.5
-    rows = rows[~touched]
-    rows = rows[np.r_[True, np.diff(rows[:, 0]) > 0.0]]
-    log = cs.Log(rows[:, 0], rows[:, 1:8], rows[:, 8:15], external_torque=rows[:, 22:29])
-    half = len(log) // 2
-    calibration = cs.calibrate(robot, log[:half])
-    assert calibration.torque_is_external
-    assert log.external_torque is not None
-    judged = log.external_torque[half:]
-    before, after = np.abs(judged.mean(axis=0)), np.abs((judged - calibration.torque_bias).mean(axis=0))
-    assert after.max() < before.max()
-    print(before, after, calibration.noise)

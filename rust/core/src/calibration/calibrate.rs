@@ -15,7 +15,7 @@ use super::shapes::{Choice, CLEAR_OF_NOISE};
 use super::smooth::smooth_velocity;
 use super::solve::Solution;
 use super::uncertainty::{self, weight};
-use super::unknowns::{Unknowns, ARMATURE, PARAMETERS, TERMS};
+use super::unknowns::{Unknowns, ARMATURE, BIAS, COULOMB, PARAMETERS, TERMS};
 use super::{Calibration, CalibrationOptions};
 use crate::error::{Error, Result};
 use crate::robot::Robot;
@@ -93,7 +93,12 @@ impl Fit {
         if options.torque_is_external {
             rows = rows.into_iter().map(of_external).collect();
         }
-        let unknowns = Unknowns::new(robot, options.payload_link, term_units(robot, log, &rows));
+        let mut term_units = term_units(robot, log, &rows);
+        if options.torque_is_external {
+            // All of an external torque may be bias.
+            term_units.iter_mut().for_each(|units| units[BIAS] += units[COULOMB]);
+        }
+        let unknowns = Unknowns::new(robot, options.payload_link, term_units);
         let nv = robot.nv();
         let unexplained: Vec<DVector<f64>> = rows.iter().map(|row| row.unexplained.clone()).collect();
         let mut used = vec![true; rows.len()];
