@@ -92,6 +92,30 @@ def test_bias_friction_and_rotors() -> None:
         assert (std > 0.0).all()
 
 
+def kept_back(torque: np.ndarray, width: np.ndarray) -> np.ndarray:
+    """What one element that follows the torque up to a width either way holds."""
+    state, held = np.zeros(torque.shape[1]), np.zeros_like(torque)
+    for row in range(1, len(torque)):
+        state = np.clip(state + torque[row] - torque[row - 1], -width, width)
+        held[row] = state
+    return held
+
+
+def test_hysteresis_of_gears_is_found_and_corrected() -> None:
+    true = torques() + 0.3 + 0.5 * np.tanh(motion().v / 0.01)
+    # Another form than the one that is fitted: one element.
+    tau = true - 0.1 * kept_back(true, 0.4 * true.std(axis=0)) + white(0.02)
+    calibration = cs.calibrate(IIWA, log(tau))
+    assert (calibration.hysteresis > 0.02).sum() >= 5
+    error = np.abs(calibration.torque_bias - 0.3)
+    assert (error < 2.0 * calibration.torque_bias_std).sum() >= 6
+    assert calibration.inertial_change <= 0.3
+    without = cs.calibrate(IIWA, log(true + white(0.02)))
+    assert (without.hysteresis < 0.01).all()
+    # The share stands for what a torque that is not trimmed to a per cent, or another form, may add.
+    assert (calibration.noise.relative != 0.05).sum() >= 5
+
+
 def test_a_payload_is_found() -> None:
     loaded = IIWA.with_payload("iiwa_link_7", 1.5, [0.02, -0.03, 0.08], 2e-3 * np.eye(3))
     payload = cs.calibrate(IIWA, log(torques(loaded) + white(0.05)), payload_link="iiwa_link_7").payload
@@ -102,6 +126,40 @@ def test_a_payload_is_found() -> None:
     assert 0.0 < payload.mass_std < 0.2
     assert payload == pickle.loads(pickle.dumps(payload))
     assert set(payload.to_dict()) == {"link", "mass", "mass_std", "com", "com_std", "moment"}
+
+
+def test_external_torques_of_a_vendor() -> None:
+    bias = np.linspace(-0.6, 0.6, 7)
+    external = bias + 0.4 * np.tanh(motion().v / 0.01) + white(0.05)
+    given = cs.Log(motion().time, motion().q, motion().v, external_torque=external)
+    calibration = cs.calibrate(IIWA, given)
+    assert calibration.torque_is_external
+    assert not cs.calibrate(IIWA, log(torques())).torque_is_external
+    np.testing.assert_allclose(calibration.torque_bias, bias, atol=0.02)
+    np.testing.assert_allclose(calibration.friction.coulomb, 0.4, atol=0.03)
+    np.testing.assert_allclose(calibration.noise.torque, 0.05, rtol=0.2)
+    assert (np.array(calibration.noise.velocity) == 0.0).all()
+    described = cs.Calibration.of_description(IIWA)
+    assert [body.mass for body in calibration.bodies] == pytest.approx([b.mass for b in described.bodies])
+    with pytest.raises(cs.InputError, match="payload_link: needs the torques of the motors"):
+        cs.calibrate(IIWA, given, payload_link="iiwa_link_7")
+
+
+@pytest.mark.parametrize("opposite", [[3], [0, 5], list(range(7))])
+def test_opposite_torques_are_found(opposite: list[int]) -> None:
+    sign = np.ones(7)
+    sign[opposite] = -1.0
+    tau = torques() + 0.3 + 0.5 * np.tanh(motion().v / 0.01) + white(0.05)
+    calibration = cs.calibrate(IIWA, log(sign * tau))
+    np.testing.assert_array_equal(calibration.torque_scale, sign)
+    np.testing.assert_allclose(calibration.torque_bias, 0.3, atol=0.05)
+
+
+def test_a_torque_that_is_scaled_is_found() -> None:
+    factor = np.array([1.0, 1.3, 1.0, 1.0, 1.0, 1.0, 1.0])
+    tau = torques() + 0.3 + 0.5 * np.tanh(motion().v / 0.01) + white(0.05)
+    np.testing.assert_allclose(cs.calibrate(IIWA, log(tau / factor)).torque_scale, factor, rtol=0.05)
+    np.testing.assert_array_equal(cs.calibrate(IIWA, log(tau)).torque_scale, 1.0)
 
 
 def test_a_contact_is_left_out() -> None:
@@ -124,7 +182,10 @@ def test_a_contact_is_left_out() -> None:
         ({"log": cs.Log([0.0, 0.1], *[np.zeros((2, 7))] * 3)}, "log: is too short"),
         ({"log": cs.Log([0.0, 0.1], np.zeros((2, 6)), *[np.zeros((2, 7))] * 2)}, "q: must be 2 rows of 7"),
         ({"log": cs.Log([0.0, 0.1], *[np.zeros((2, 7))] * 2, np.zeros((2, 1)))}, "tau: must be 2 rows of 7"),
-        ({"log": cs.Log([0.0], *[np.zeros((1, 7))] * 2, external_torque=np.zeros((1, 7)))}, "log: needs tau"),
+        (
+            {"log": cs.Log([0.0], *[np.zeros((1, 7))] * 2, external_torque=np.zeros((1, 7)))},
+            "log: must have rows",
+        ),
         ({"log": cs.Log(np.arange(3e3) * 0.01, *[np.zeros((3000, 7))] * 3)}, "log: "),
         ({"false_alarms_per_hour": 0.0}, "false_alarms_per_hour: must be positive"),
         ({"false_alarms_per_hour": "one"}, "false_alarms_per_hour: expected a number"),

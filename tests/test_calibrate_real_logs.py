@@ -103,3 +103,11 @@ def test_joints_of_a_tiago_without_information_are_named() -> None:
     assert "'arm_5_joint'" in notes
     assert "'torso_lift_joint'" in notes
     assert "exciting_motion" in notes
+
+
+def test_opposite_torques_of_a_panda_are_found() -> None:
+    robot, log = panda()
+    assert log.tau is not None
+    for sign in (-np.ones(7), np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0, -1.0])):
+        opposite = cs.Log(log.time, log.q, log.v, sign * log.tau)
+        np.testing.assert_array_equal(np.sign(cs.calibrate(robot, opposite).torque_scale), sign)

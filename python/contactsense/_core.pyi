@@ -684,6 +684,19 @@ class Calibration:
     def friction(self) -> JointFriction:
         """Friction inside the measured torque: a `JointFriction`."""
     @property
+    def hysteresis(self) -> NDArray[np.float64]:
+        """Share of a change of the torque that gears keep back, `(nv,)`; a read-only copy.
+
+        Three times this share while the torque has changed by at most twice `hysteresis_width` since it last turned
+        round, twice up to six widths, once up to eighteen, none beyond.
+        """
+    @property
+    def hysteresis_std(self) -> NDArray[np.float64]:
+        """Standard deviation of `hysteresis`, `(nv,)`; a read-only copy."""
+    @property
+    def hysteresis_width(self) -> NDArray[np.float64]:
+        """The scale of the torque over which hysteresis levels off, `(nv,)` [Nm; N for sliding joints]; a read-only copy."""
+    @property
     def armature(self) -> NDArray[np.float64]:
         """Rotor inertia, reflected through the gear, `(nv,)` [kg m^2; kg for sliding joints]; a read-only copy."""
     @property
@@ -1871,6 +1884,7 @@ def _calibrate(
     tau: ArrayLike,
     false_alarms_per_hour: float,
     payload_link: str | None,
+    torque_is_external: bool,
 ) -> Calibration:
     """From the columns of a log, each flat."""
 

@@ -22,7 +22,8 @@ def calibrate(
 
     Args:
         robot: with a fixed base.
-        log: motion without contact, at least 10 s; see `exciting_motion`. It needs `tau`.
+        log: motion without contact, at least 10 s; see `exciting_motion`. Where it has only
+            `external_torque`, the bias, friction and noise left in that are learnt.
         false_alarms_per_hour: that thresholds are set for [1/h].
         payload_link: the link that holds a payload which the description lacks.
 
@@ -44,7 +45,8 @@ def calibrate(
     """
     if not isinstance(log, Log):
         raise InputError(f"log: expected a contactsense.Log, got {type(log).__name__}")
-    if log.tau is None:
-        raise InputError("log: needs tau, the torques of the motors; it has only external_torque")
-    q, v, tau = log.q.ravel(), log.v.ravel(), log.tau.ravel()
-    return Calibration(_core._calibrate(robot, log.time, q, v, tau, false_alarms_per_hour, payload_link))
+    external = log.tau is None
+    tau = log.external_torque if log.tau is None else log.tau
+    assert tau is not None  # a log has one of them
+    columns = (log.time, log.q.ravel(), log.v.ravel(), tau.ravel())
+    return Calibration(_core._calibrate(robot, *columns, false_alarms_per_hour, payload_link, external))

@@ -20,6 +20,8 @@ fn step(c: &mut Criterion) {
         let tau = common::numbers(robot.nv(), 1.1);
         let mut calibration = Calibration::of_description(&robot);
         calibration.friction.coulomb.fill(0.5);
+        calibration.hysteresis.fill(0.05);
+        calibration.hysteresis_width.fill(1.0);
         (calibration.velocity_delay, calibration.torque_delay) = (0.003, 0.001);
         let mut calibrated =
             MomentumObserver::calibrated(&robot, 1e-3, &[50.0], &calibration).expect("valid settings");

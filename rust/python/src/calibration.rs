@@ -61,6 +61,9 @@ const ATTRIBUTES: &[&str] = &[
     "torque_scale",
     "torque_is_external",
     "friction",
+    "hysteresis",
+    "hysteresis_std",
+    "hysteresis_width",
     "armature",
     "armature_std",
     "bodies",
@@ -151,6 +154,27 @@ impl PyCalibration {
     fn friction(&self) -> PyJointFriction {
         let Calibration { friction, coulomb_std, viscous_std, .. } = self.0.clone();
         PyJointFriction { friction, coulomb_std, viscous_std }
+    }
+
+    /// Share of a change of the torque that gears keep back, `(nv,)`; a read-only copy.
+    ///
+    /// Three times this share while the torque has changed by at most twice `hysteresis_width` since it last turned
+    /// round, twice up to six widths, once up to eighteen, none beyond.
+    #[getter]
+    fn hysteresis<'py>(&self, py: Python<'py>) -> Array<'py> {
+        numbers(py, &self.0.hysteresis)
+    }
+
+    /// Standard deviation of `hysteresis`, `(nv,)`; a read-only copy.
+    #[getter]
+    fn hysteresis_std<'py>(&self, py: Python<'py>) -> Array<'py> {
+        numbers(py, &self.0.hysteresis_std)
+    }
+
+    /// The scale of the torque over which hysteresis levels off, `(nv,)` [Nm; N for sliding joints]; a read-only copy.
+    #[getter]
+    fn hysteresis_width<'py>(&self, py: Python<'py>) -> Array<'py> {
+        numbers(py, &self.0.hysteresis_width)
     }
 
     /// Rotor inertia, reflected through the gear, `(nv,)` [kg m^2; kg for sliding joints]; a read-only copy.
@@ -302,6 +326,7 @@ pub fn _calibrate(
     tau: &Bound<'_, PyAny>,
     false_alarms_per_hour: &Bound<'_, PyAny>,
     payload_link: Option<&Bound<'_, PyAny>>,
+    torque_is_external: bool,
 ) -> PyResult<PyCalibration> {
     let py = robot.py();
     let robot = self::robot(robot)?.get().0.clone();
@@ -315,6 +340,7 @@ pub fn _calibrate(
     let options = CalibrationOptions {
         false_alarms_per_hour: number("false_alarms_per_hour", false_alarms_per_hour)?,
         payload_link: payload_link.map(link).transpose()?,
+        torque_is_external,
     };
     let (time, q) = (Vector::new("time", time)?, Vector::new("q", q)?);
     let (v, tau) = (Vector::new("v", v)?, Vector::new("tau", tau)?);

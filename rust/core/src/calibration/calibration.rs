@@ -44,6 +44,13 @@ pub struct Calibration {
     pub torque_is_external: bool,
     /// Friction inside the measured torque.
     pub friction: Friction,
+    /// Share of a change of the torque that gears keep back: three times this share while the torque has changed by at most
+    /// two widths since it turned round, twice up to six, once up to eighteen, none beyond.
+    pub hysteresis: Vec<f64>,
+    /// One standard deviation.
+    pub hysteresis_std: Vec<f64>,
+    /// The width (Nm; N).
+    pub hysteresis_width: Vec<f64>,
     /// One standard deviation of each Coulomb friction (Nm; N).
     pub coulomb_std: Vec<f64>,
     /// One standard deviation of each viscous friction (Nm s/rad; N s/m).
@@ -152,11 +159,13 @@ pub struct CalibrationOptions {
     pub false_alarms_per_hour: f64,
     /// The link that holds a payload which the description lacks.
     pub payload_link: Option<LinkIndex>,
+    /// Whether the log's torques are external torques of the vendor: then bias, friction left in them and noise are learnt.
+    pub torque_is_external: bool,
 }
 
 impl Default for CalibrationOptions {
     fn default() -> Self {
-        CalibrationOptions { false_alarms_per_hour: 1.0, payload_link: None }
+        CalibrationOptions { false_alarms_per_hour: 1.0, payload_link: None, torque_is_external: false }
     }
 }
 
@@ -167,6 +176,10 @@ impl CalibrationOptions {
             return Err(Error::input("false_alarms_per_hour", text));
         }
         match self.payload_link {
+            Some(_) if self.torque_is_external => {
+                let text = "needs the torques of the motors: an external torque says nothing of weights";
+                Err(Error::input("payload_link", text))
+            }
             Some(link) if robot[link].body == 0 => {
                 let text = format!("'{}' is fixed to the world: no joint carries its load", robot[link].name);
                 Err(Error::input("payload_link", text))
@@ -190,6 +203,9 @@ impl Calibration {
             torque_scale: vec![1.0; robot.nv()],
             torque_is_external: false,
             friction: Friction { coulomb: zeros.clone(), viscous: zeros.clone(), reversal },
+            hysteresis: zeros.clone(),
+            hysteresis_std: zeros.clone(),
+            hysteresis_width: zeros.clone(),
             coulomb_std: zeros.clone(),
             viscous_std: zeros.clone(),
             armature: armature(robot),
@@ -237,6 +253,9 @@ impl Calibration {
             ("coulomb_std", &self.coulomb_std, positive(&self.coulomb_std)),
             ("viscous_std", &self.viscous_std, positive(&self.viscous_std)),
             ("residual", &self.residual, positive(&self.residual)),
+            ("hysteresis", &self.hysteresis, self.hysteresis.iter().all(|x| (0.0..1.0).contains(x))),
+            ("hysteresis_std", &self.hysteresis_std, positive(&self.hysteresis_std)),
+            ("hysteresis_width", &self.hysteresis_width, positive(&self.hysteresis_width)),
             ("torque_scale", &self.torque_scale, !self.torque_scale.contains(&0.0)),
             ("friction.coulomb", &self.friction.coulomb, positive(&self.friction.coulomb)),
             ("friction.viscous", &self.friction.viscous, positive(&self.friction.viscous)),
@@ -318,8 +337,7 @@ impl Calibration {
 
     /// What corrects velocities and torques.
     pub(crate) fn torque_model(&self) -> TorqueModel {
-        let delays = [self.velocity_delay, self.torque_delay];
-        TorqueModel::new(&self.torque_scale, &self.torque_bias, &self.friction, delays)
+        TorqueModel::new(self)
     }
 }
 

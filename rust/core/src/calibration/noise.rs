@@ -23,7 +23,7 @@ const TRIMMED: f64 = 0.05;
 /// What trimming that share takes from the mean square of Gaussian numbers.
 const TRIMMED_SQUARE: f64 = 0.7587;
 /// Error in proportion to the contact's own torque: hysteresis and scale of gears, which no free motion shows.
-const RELATIVE: f64 = 0.05;
+pub(super) const RELATIVE: f64 = 0.05;
 /// Steps of coordinate descent; each unknown has its own row in most equations.
 const STEPS: usize = 100;
 /// Noise of a velocity that was low-passed at 60 Hz is so many times its first differences at 1 kHz.
@@ -63,7 +63,8 @@ fn differences(value: &impl Fn(usize) -> f64, count: usize, order: usize) -> f64
 
 /// A part of a log and the model that was fitted without it.
 pub(super) struct Judged {
-    pub robot: Arc<Robot>,
+    /// None where the torques are external ones.
+    pub robot: Option<Arc<Robot>>,
     pub torque: TorqueModel,
     pub rows: std::ops::Range<usize>,
 }
@@ -108,14 +109,17 @@ fn spread(robot: &Robot, log: &Log<'_>, parts: &[Judged], skipped: &[bool], step
     let (mut v, mut tau) = (vec![0.0; nv], vec![0.0; nv]);
     for part in parts {
         for (which, &gain) in gains.iter().enumerate() {
-            let mut observer = MomentumObserver::new(Arc::clone(&part.robot), step, &[gain])?;
+            let observer = |robot: &Arc<Robot>| MomentumObserver::new(Arc::clone(robot), step, &[gain]);
+            let mut observer = part.robot.as_ref().map(observer).transpose()?;
+            let mut low_passed = vec![0.0; nv];
             let settled = SETTLED / gain;
             let mut torque = part.torque.clone();
             let mut since = 0.0;
             for row in part.rows.clone() {
                 let dt = if row == part.rows.start { step } else { log.time[row] - log.time[row - 1] };
                 if dt > super::LONGEST_STEPS * step || skipped[row] {
-                    observer.reset();
+                    observer.iter_mut().for_each(MomentumObserver::reset);
+                    low_passed.fill(0.0);
                     torque.reset();
                     since = 0.0;
                     continue;
@@ -123,7 +127,14 @@ fn spread(robot: &Robot, log: &Log<'_>, parts: &[Judged], skipped: &[bool], step
                 tau.copy_from_slice(log.tau_of(row));
                 v.copy_from_slice(log.v_of(robot, row));
                 torque.correct(dt, &mut v, &mut tau);
-                let external = observer.update(&Sample::new(log.q_of(robot, row), &v, &tau).dt(dt))?;
+                let external = match &mut observer {
+                    Some(observer) => observer.update(&Sample::new(log.q_of(robot, row), &v, &tau).dt(dt))?,
+                    None => {
+                        let new = 1.0 - (-gain * dt).exp();
+                        low_passed.iter_mut().zip(&tau).for_each(|(low, tau)| *low += new * (tau - *low));
+                        &low_passed[..]
+                    }
+                };
                 since += dt;
                 if since > settled {
                     for (sum, r) in squares[which].iter_mut().zip(external) {
@@ -134,9 +145,10 @@ fn spread(robot: &Robot, log: &Log<'_>, parts: &[Judged], skipped: &[bool], step
             }
         }
         // The mass matrix changes slowly: a few poses say enough.
+        let Some(corrected) = &part.robot else { continue };
         let stride = (part.rows.len() / 20).max(1);
         for row in part.rows.clone().step_by(stride) {
-            mass += part.robot.mass_matrix(log.q_of(robot, row))?.map(|m| m * m);
+            mass += corrected.mass_matrix(log.q_of(robot, row))?.map(|m| m * m);
             poses += 1.0;
         }
     }

@@ -10,7 +10,7 @@ use crate::detection::{
 };
 use crate::error::Result;
 use crate::observer::{MomentumObserver, ObserverBank, Step};
-use crate::robot::Robot;
+use crate::robot::{Kinematics, Robot};
 use crate::torque::NoiseModel;
 use crate::Sample;
 
@@ -50,7 +50,7 @@ struct Stretch {
 /// Completes a noise model, and finds the tails of the statistic for those gains that the log's step allows. `coulomb` is the
 /// friction of each joint, `skipped` says which rows have a contact, `step` is the usual one (s).
 pub(super) fn rest_errors(
-    robot: &Robot,
+    robot: &Arc<Robot>,
     log: &Log<'_>,
     parts: &[Judged],
     skipped: &[bool],
@@ -93,17 +93,29 @@ pub(super) fn rest_errors(
     Ok((noise, tails))
 }
 
+/// What a row of a log tells detection.
+struct Told<'a> {
+    kinematics: &'a Kinematics,
+    velocity: &'a [f64],
+    /// The external torque before any low-pass; none in the first row of a stretch.
+    unexplained: Option<&'a [f64]>,
+    /// Since the row before (s).
+    dt: f64,
+    starts: bool,
+}
+
 impl Judged {
-    /// Calls `row` with each row without contact, and `restart` where a new stretch begins.
+    /// Calls `told` with each row without contact.
     fn each_row(
         &self,
-        robot: &Robot,
+        robot: &Arc<Robot>,
         log: &Log<'_>,
         skipped: &[bool],
         step: f64,
-        mut row: impl FnMut(&MomentumObserver, f64, bool),
+        mut told: impl FnMut(&Told<'_>),
     ) -> Result<()> {
-        let mut observer = MomentumObserver::new(Arc::clone(&self.robot), step, &[GAINS[0]])?;
+        let source = self.robot.as_ref().unwrap_or(robot);
+        let mut observer = MomentumObserver::new(Arc::clone(source), step, &[GAINS[0]])?;
         let mut torque = self.torque.clone();
         let (mut v, mut tau) = (vec![0.0; robot.nv()], vec![0.0; robot.nv()]);
         let mut starts = true;
@@ -120,7 +132,11 @@ impl Judged {
             v.copy_from_slice(log.v_of(robot, index));
             torque.correct(if starts { 0.0 } else { dt }, &mut v, &mut tau);
             observer.advance(&Sample::new(log.q_of(robot, index), &v, &tau), Step::Of(dt));
-            row(&observer, dt, starts);
+            let unexplained = match self.robot {
+                Some(_) => observer.unexplained(),
+                None => Some(&tau[..]).filter(|_| !starts),
+            };
+            told(&Told { kinematics: observer.kinematics(), velocity: &v, unexplained, dt, starts });
             starts = false;
         }
         Ok(())
@@ -128,7 +144,7 @@ impl Judged {
 
     fn stretches(
         &self,
-        robot: &Robot,
+        robot: &Arc<Robot>,
         log: &Log<'_>,
         skipped: &[bool],
         step: f64,
@@ -140,14 +156,15 @@ impl Judged {
         let mut bias = vec![0.0; nv];
         let (mut since, mut kept) = (0.0, 0.0);
         let mut stretches: Vec<Stretch> = vec![];
-        self.each_row(robot, log, skipped, step, |observer, dt, starts| {
-            if starts {
+        self.each_row(robot, log, skipped, step, |row| {
+            let dt = row.dt;
+            if row.starts {
                 bank.reset();
                 bias.fill(0.0);
                 (since, kept) = (0.0, 0.0);
                 stretches.push(Stretch::default());
             }
-            bank.advance(observer, Step::Of(dt));
+            bank.advance(row.unexplained, Step::Of(dt));
             since += dt;
             kept += dt;
             let torque = &bank.torques()[0];
@@ -158,7 +175,7 @@ impl Judged {
                 stretch.slow.push(torque.clone());
                 stretch.followed.push(torque.iter().zip(&bias).map(|(torque, bias)| torque - bias).collect());
                 stretch.fast.push(bank.torques()[event].clone());
-                stretch.velocity.push(observer.velocity().to_vec());
+                stretch.velocity.push(row.velocity.to_vec());
             }
         })?;
         Ok(stretches)
@@ -167,7 +184,7 @@ impl Judged {
 
 /// By velocity variable: what white noise of torque and velocity leave behind an observer.
 fn white_variance(
-    robot: &Robot,
+    robot: &Arc<Robot>,
     log: &Log<'_>,
     parts: &[Judged],
     noise: &NoiseModel,
@@ -178,7 +195,7 @@ fn white_variance(
     let (mut sum, mut poses) = (vec![0.0; robot.nv()], 0.0);
     for part in parts {
         for row in part.rows.clone().step_by((part.rows.len() / POSES).max(1)) {
-            let covariance = white.covariance(&part.robot, log.q_of(robot, row), gain, step)?;
+            let covariance = white.covariance(part.robot.as_ref().unwrap_or(robot), log.q_of(robot, row), gain, step)?;
             sum.iter_mut().enumerate().for_each(|(j, sum)| *sum += covariance[(j, j)]);
             poses += 1.0;
         }
@@ -233,7 +250,7 @@ fn events(stretches: &[Stretch], joint: usize, spacing: f64) -> Option<f64> {
 
 /// The tails of the statistic for each gain.
 fn tails(
-    robot: &Robot,
+    robot: &Arc<Robot>,
     log: &Log<'_>,
     parts: &[Judged],
     skipped: &[bool],
@@ -251,19 +268,21 @@ fn tails(
         .collect();
     let mut peaks: Vec<Vec<f64>> = vec![vec![]; gains.len()];
     for part in parts {
-        let variances = noise.variances(&part.robot)?;
-        let mut test = ContactTest::new(Arc::clone(&part.robot), &variances, step, &levels, FOLLOW_TIME);
+        let source = part.robot.as_ref().unwrap_or(robot);
+        let variances = noise.variances(source)?;
+        let mut test = ContactTest::new(Arc::clone(source), &variances, step, &levels, FOLLOW_TIME);
         let mut largest = vec![0.0_f64; gains.len()];
         let (mut since, mut window) = (0.0, 0.0);
-        part.each_row(robot, log, skipped, step, |observer, dt, starts| {
-            if starts {
+        part.each_row(robot, log, skipped, step, |row| {
+            let dt = row.dt;
+            if row.starts {
                 test.reset();
                 largest.fill(0.0);
                 (since, window) = (0.0, 0.0);
             }
-            test.advance(observer, Step::Of(dt));
+            test.advance(row.kinematics, row.velocity, row.unexplained, Step::Of(dt));
             test.evaluate(&[], false);
-            test.follow(&[], dt, starts || test.suspicious());
+            test.follow(&[], dt, row.starts || test.suspicious());
             since += dt;
             if since < SETTLED {
                 return;

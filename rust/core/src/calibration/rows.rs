@@ -5,6 +5,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::hysteresis::Stops;
 use super::lead::Lead;
 use super::log::Log;
 use super::torque_model::Reversal;
@@ -26,6 +27,8 @@ pub(crate) enum Term {
     Torque,
     /// Its rate, as [`Lead`] sees it.
     TorqueRate,
+    /// What hysteresis keeps back of it for a share of one, with this first width in standard deviations of the torque.
+    Hysteresis(f64),
 }
 
 /// One instant of a log.
@@ -63,7 +66,7 @@ pub(crate) fn rows(robot: &Robot, log: &Log<'_>, filter: &Filter, terms: &[Term]
     let mut regressor = MomentumRegressor::new(robot);
     let mut now = Instant::new(robot);
     let mut before = now.clone();
-    let mut state = Filtered::new(robot, terms);
+    let mut state = Filtered::new(robot, terms, &torque_deviations(robot, log));
     let mut rows = vec![];
     let (mut started, mut last) = (f64::NAN, f64::NEG_INFINITY);
     let (mut tau, mut rate) = (vec![0.0; nv], Lead::new(0.0, nv));
@@ -97,6 +100,22 @@ pub(crate) fn rows(robot: &Robot, log: &Log<'_>, filter: &Filter, terms: &[Term]
         }
     }
     rows
+}
+
+/// The standard deviation of each measured torque, `(nv,)` (Nm; N).
+pub(crate) fn torque_deviations(robot: &Robot, log: &Log<'_>) -> Vec<f64> {
+    let mut tau = vec![0.0; robot.nv()];
+    let count = log.len().max(1) as f64;
+    let (mut sums, mut squares) = (vec![0.0; robot.nv()], vec![0.0; robot.nv()]);
+    for row in 0..log.len() {
+        spread_torque(log.tau_of(row), &mut tau);
+        for (j, tau) in tau.iter().enumerate() {
+            sums[j] += tau;
+            squares[j] += tau * tau;
+        }
+    }
+    let deviation = |(sum, square): (&f64, &f64)| (square / count - (sum / count).powi(2)).max(0.0).sqrt();
+    sums.iter().zip(&squares).map(deviation).collect()
 }
 
 /// What is filtered, at one instant.
@@ -135,17 +154,22 @@ struct Filtered {
     names: Vec<Term>,
     /// Of Coulomb friction, at the last instant.
     shares: DMatrix<f64>,
+    /// Of hysteresis.
+    stops: DMatrix<Stops>,
     terms: DMatrix<f64>,
 }
 
 impl Filtered {
-    fn new(robot: &Robot, terms: &[Term]) -> Self {
+    fn new(robot: &Robot, terms: &[Term], deviations: &[f64]) -> Self {
+        let width = |term: &Term| if let Term::Hysteresis(width) = term { *width } else { 1.0 };
+        let stops = terms.iter().flat_map(|term| deviations.iter().map(move |d| Stops::new(d * width(term))));
         Filtered {
             model: DVector::zeros(robot.nv()),
             torque: DVector::zeros(robot.nv()),
             inertial: MomentumRegressor::new(robot).momentum,
             names: terms.to_vec(),
             shares: DMatrix::zeros(robot.nv(), terms.len()),
+            stops: DMatrix::from_iterator(robot.nv(), terms.len(), stops),
             terms: DMatrix::zeros(robot.nv(), terms.len()),
         }
     }
@@ -156,6 +180,7 @@ impl Filtered {
         self.inertial.fill(0.0);
         self.terms.fill(0.0);
         self.shares.fill(0.0);
+        self.stops.iter_mut().for_each(Stops::reset);
     }
 
     /// `y' = gain (dp/dt - rate - y)`, exactly over a step on which `dp/dt - rate` is constant, as the observer does.
@@ -188,6 +213,11 @@ impl Filtered {
                     Term::Armature => rise * (v[1] - v[0]),
                     Term::Torque => mean * (tau[0] + tau[1]),
                     Term::TorqueRate => mean * (before.torque_rate[k] + now.torque_rate[k]),
+                    Term::Hysteresis(_) => {
+                        let stops = &mut self.stops[(k, column)];
+                        let last = stops.sum();
+                        -mean * (last + stops.advance(now.tau[k]))
+                    }
                 };
                 let y = &mut self.terms[(k, column)];
                 *y = kept * *y + input;

@@ -139,7 +139,7 @@ fn information(columns: &[Column], h: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// `J' x`.
-fn transposed_product(columns: &[Column], x: &DVector<f64>) -> DVector<f64> {
+pub(super) fn transposed_product(columns: &[Column], x: &DVector<f64>) -> DVector<f64> {
     let entry = |column: &Column| -> f64 {
         column.values.iter().enumerate().map(|(i, value)| value * x[column.first + i]).sum()
     };

@@ -1,6 +1,8 @@
 //! From measured torques to those that move the links: scale, bias and friction of each joint, and delays.
 
+use super::hysteresis::Stops;
 use super::lead::Lead;
+use super::Calibration;
 
 /// Friction of the joints, by velocity variable.
 ///
@@ -101,11 +103,15 @@ struct Joint {
     reversal: Reversal,
     /// Of Coulomb friction, at the last step.
     share: f64,
+    /// Of the torque's change.
+    hysteresis: f64,
+    stops: Stops,
 }
 
 impl TorqueModel {
-    /// `delays` are those of velocity and torque (s).
-    pub fn new(scale: &[f64], bias: &[f64], friction: &Friction, delays: [f64; 2]) -> Self {
+    /// Of one calibration.
+    pub fn new(calibration: &Calibration) -> Self {
+        let Calibration { torque_scale: scale, torque_bias: bias, friction, .. } = calibration;
         let joint = |j: usize| Joint {
             scale: scale[j],
             bias: bias[j],
@@ -113,14 +119,20 @@ impl TorqueModel {
             viscous: friction.viscous[j],
             reversal: friction.reversal[j],
             share: 0.0,
+            hysteresis: calibration.hysteresis[j],
+            stops: Stops::new(calibration.hysteresis_width[j]),
         };
+        let delays = [calibration.velocity_delay, calibration.torque_delay];
         let [velocity_lead, torque_lead] = delays.map(|delay| Lead::new(delay, scale.len()));
         TorqueModel { joints: (0..scale.len()).map(joint).collect(), velocity_lead, torque_lead }
     }
 
     /// Forgets the signals of before.
     pub fn reset(&mut self) {
-        self.joints.iter_mut().for_each(|joint| joint.share = 0.0);
+        for joint in &mut self.joints {
+            joint.share = 0.0;
+            joint.stops.reset();
+        }
         self.velocity_lead.reset();
         self.torque_lead.reset();
     }
@@ -133,7 +145,9 @@ impl TorqueModel {
         for ((joint, v), tau) in self.joints.iter_mut().zip(v).zip(tau) {
             joint.share = joint.reversal.share(joint.share, *v, dt);
             let friction = joint.coulomb * joint.share + joint.viscous * *v;
-            *tau = joint.scale * *tau - joint.bias - friction;
+            let measured = joint.scale * *tau;
+            let kept_back = joint.hysteresis * joint.stops.advance(measured);
+            *tau = measured + kept_back - joint.bias - friction;
         }
     }
 }
@@ -151,23 +165,28 @@ mod tests {
         }
     }
 
+    fn model(friction: [f64; 2], reversal: Reversal, scale: f64, bias: f64) -> TorqueModel {
+        let robot = crate::robot::Robot::example_arm();
+        let [coulomb, viscous] = friction.map(|x| vec![x; 7]);
+        let friction = Friction { coulomb, viscous, reversal: vec![reversal; 7] };
+        let (torque_scale, torque_bias) = (vec![scale; 7], vec![bias; 7]);
+        let described = Calibration::of_description(&robot);
+        TorqueModel::new(&Calibration { torque_scale, torque_bias, friction, ..described })
+    }
+
     #[test]
     fn a_torque_is_scaled_first() {
-        let reversal = vec![Reversal::Velocity(0.01)];
-        let friction = Friction { coulomb: vec![0.5], viscous: vec![0.1], reversal };
-        let mut tau = [-3.0];
-        TorqueModel::new(&[-1.0], &[0.2], &friction, [0.0; 2]).correct(1e-3, &mut [1.0], &mut tau);
+        let mut tau = [-3.0; 7];
+        model([0.5, 0.1], Reversal::Velocity(0.01), -1.0, 0.2).correct(1e-3, &mut [1.0; 7], &mut tau);
         assert!((tau[0] - (3.0 - 0.2 - 0.5 - 0.1)).abs() < 2e-4);
     }
 
     #[test]
     fn friction_that_turns_with_displacement_stays_at_rest() {
-        let reversal = vec![Reversal::Displacement(0.01)];
-        let friction = Friction { coulomb: vec![2.0], viscous: vec![0.0], reversal };
-        let mut model = TorqueModel::new(&[1.0], &[0.0], &friction, [0.0; 2]);
+        let mut model = model([2.0, 0.0], Reversal::Displacement(0.01), 1.0, 0.0);
         let mut friction_at = |v: f64| {
-            let mut tau = [0.0];
-            model.correct(1e-3, &mut [v], &mut tau);
+            let mut tau = [0.0; 7];
+            model.correct(1e-3, &mut [v; 7], &mut tau);
             -tau[0]
         };
         (0..20).for_each(|_| _ = friction_at(1.0));
@@ -175,8 +194,23 @@ mod tests {
         // Half the way back.
         assert!((0..10).map(|_| friction_at(-1.0)).last().unwrap().abs() < 1e-12);
         model.reset();
-        let mut tau = [0.0];
-        model.correct(1e-3, &mut [0.0], &mut tau);
+        let mut tau = [0.0; 7];
+        model.correct(1e-3, &mut [0.0; 7], &mut tau);
         assert_eq!(tau[0], 0.0);
+    }
+
+    #[test]
+    fn what_hysteresis_keeps_back_is_added() {
+        let robot = crate::robot::Robot::example_arm();
+        let (hysteresis, hysteresis_width) = (vec![0.05; 7], vec![1.0; 7]);
+        let described = Calibration::of_description(&robot);
+        let mut model = TorqueModel::new(&Calibration { hysteresis, hysteresis_width, ..described });
+        let mut corrected = |tau: f64| {
+            let mut tau = [tau; 7];
+            model.correct(1e-3, &mut [0.0; 7], &mut tau);
+            tau[3]
+        };
+        assert_eq!(corrected(10.0), 10.0);
+        assert!((corrected(30.0) - (30.0 + 0.05 * 13.0)).abs() < 1e-12);
     }
 }

@@ -8,15 +8,17 @@ use crate::robot::{LinkIndex, Robot};
 use crate::spatial::Pose;
 
 /// Terms of each joint, in the order of their columns.
-pub(super) const TERMS: usize = 4;
+pub(super) const TERMS: usize = 5;
 pub(super) const BIAS: usize = 0;
 pub(super) const COULOMB: usize = 1;
 pub(super) const VISCOUS: usize = 2;
 pub(super) const ARMATURE: usize = 3;
+pub(super) const HYSTERESIS: usize = 4;
 
 /// Numbers of a payload: its inertial parameters in the link's frame, all free, so that the misfit has one minimum.
 pub(super) const PAYLOAD: usize = PARAMETERS;
-const PARAMETERS: usize = 10;
+/// Inertial parameters of a body.
+pub(super) const PARAMETERS: usize = 10;
 /// A torque may be late by so much: one standard deviation (s).
 const TORQUE_DELAY: f64 = 0.01;
 
@@ -67,7 +69,7 @@ impl Unknowns {
     pub fn new(robot: &Robot, payload_link: Option<LinkIndex>, term_units: Vec<[f64; TERMS]>) -> Self {
         let described = robot.inertial_parameters();
         let payload = payload_link.map(|link| &robot[link]).filter(|link| link.body > 0);
-        let floors = robot.bodies[1..].iter().map(|body| [f64::NEG_INFINITY, 0.0, 0.0, -body.armature]);
+        let floors = robot.bodies[1..].iter().map(|body| [f64::NEG_INFINITY, 0.0, 0.0, -body.armature, 0.0]);
         Unknowns {
             bodies: described.iter().map(PseudoInertia::nearest).collect(),
             payload: payload.map(|link| Held { body: link.body - 1, placement: link.placement }),

@@ -7,8 +7,8 @@ use super::slow_errors::SlowErrors;
 use super::velocity_covariance::VelocityCovariance;
 use super::whitening::Whitening;
 use crate::math::chi_square::standard_deviations;
-use crate::observer::{MomentumObserver, ObserverBank, Step};
-use crate::robot::Robot;
+use crate::observer::{ObserverBank, Step};
+use crate::robot::{Kinematics, Robot};
 use crate::torque::{ErrorVariances, NoiseModel};
 
 /// Gains of the bank (1/s): a slow one sees weak contacts, a fast one hard impacts early.
@@ -144,14 +144,15 @@ impl ContactTest {
         ContactTest { bank: None, signals: vec![signal], ..test }
     }
 
-    /// After a step of the observer.
+    /// A step to a pose and velocities `(nv,)`, with the external torque before any low-pass; none where the step told nothing
+    /// of it.
     #[inline]
-    pub fn advance(&mut self, observer: &MomentumObserver, step: Step) {
+    pub fn advance(&mut self, kinematics: &Kinematics, v: &[f64], unexplained: Option<&[f64]>, step: Step) {
         if let Some(bank) = &mut self.bank {
-            bank.advance(observer, step);
+            bank.advance(unexplained, step);
         }
-        self.velocity.advance(&self.robot, observer.kinematics());
-        self.friction.advance(observer.velocity(), step.length(self.dt));
+        self.velocity.advance(&self.robot, kinematics);
+        self.friction.advance(v, step.length(self.dt));
         let all = 0..self.signals.len();
         let due = if self.started { self.next..self.next + 1 } else { all };
         for signal in &mut self.signals[due] {

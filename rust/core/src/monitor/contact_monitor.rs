@@ -208,7 +208,7 @@ impl ContactMonitor {
         let length = step.length(clock.dt());
         *remainder_learned = false;
         leave_out(sensing, collision_torque, Some(test.slow().bias()));
-        test.advance(observer, step);
+        test.advance(observer.kinematics(), observer.velocity(), observer.unexplained(), step);
         test.evaluate(collision_torque, detector.collision());
         let touched = detector.collision() || felt || test.suspicious();
         if touched && !new {

@@ -1,9 +1,8 @@
 //! One momentum observer with several gains: momentum and its known rate are worked out once (algorithm D3).
 
-use super::momentum_observer::MomentumObserver;
 use super::step::Step;
 
-/// External torques behind low-passes of several gains, from the observer's momentum.
+/// External torques behind low-passes of several gains.
 #[derive(Debug, Clone)]
 pub(crate) struct ObserverBank {
     dt: f64,
@@ -26,10 +25,11 @@ impl ObserverBank {
         }
     }
 
-    /// After a step of the observer; over a gap the torques are kept, as the observer keeps its own.
+    /// A step with an external torque before any low-pass `(nv,)`; none over a gap: the torques are then kept, as an observer
+    /// keeps its own.
     #[inline]
-    pub fn advance(&mut self, observer: &MomentumObserver, step: Step) {
-        let Some(unexplained) = observer.unexplained() else { return };
+    pub fn advance(&mut self, unexplained: Option<&[f64]>, step: Step) {
+        let Some(unexplained) = unexplained else { return };
         for ((torque, gain), nominal) in self.torques.iter_mut().zip(&self.gains).zip(&self.decays) {
             let decay = match step {
                 Step::Nominal => *nominal,
@@ -60,6 +60,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
+    use crate::observer::MomentumObserver;
     use crate::robot::Robot;
     use crate::Sample;
 
@@ -77,7 +78,7 @@ mod tests {
             let tau: Vec<f64> = (0..7).map(|j| (3.0 * phase).sin() * f64::from(j)).collect();
             let step = if tick % 7 == 0 { Step::Of(4e-3) } else { Step::Nominal };
             source.advance(&Sample::new(&q, &v, &tau), step);
-            bank.advance(&source, step);
+            bank.advance(source.unexplained(), step);
             for (observer, torque) in alone.iter_mut().zip(bank.torques()) {
                 assert_eq!(observer.advance(&Sample::new(&q, &v, &tau), step), torque);
             }

@@ -1,0 +1,105 @@
+//! Scale and sign of each torque, where a log tells them from masses.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::folds::{hold_out, is_less, HeldOut, CHANGES};
+use super::normal::{own_terms, scaled, torque, Joints, Shape};
+use super::rows::Row;
+use super::uncertainty::weight;
+use super::unknowns::{Unknowns, BIAS, COULOMB, VISCOUS};
+
+/// A scale that is nearer to one is the masses' business: descriptions are no better.
+const LEAST: f64 = 0.1;
+/// A scale may be one if it is at most so many standard errors away.
+const SIGNIFICANT: f64 = 3.0;
+/// Of neighbouring rows so many err together, as a rule.
+const TOGETHER: f64 = 10.0;
+/// The measured torque, bias, friction and viscous friction.
+const COLUMNS: usize = 4;
+/// Any shape: scale is told by motion, not by where it turns round.
+const SHAPE: Shape = Shape { friction: 0, hysteresis: None };
+
+/// Factors from measured to true torque: other than one only where held-out blocks leave less by more than one standard error,
+/// whatever masses do. `unknowns_of` makes the unknowns for rows whose torques were multiplied.
+pub(super) fn torque_scales(
+    rows: &[Row],
+    joints: usize,
+    unknowns_of: impl Fn(&[f64], &[Row]) -> Unknowns,
+) -> Vec<f64> {
+    let found: Vec<f64> = (0..joints).map(|joint| likely(rows, joint)).collect();
+    let mut scales = vec![1.0; joints];
+    if found == scales {
+        return scales;
+    }
+    let judge = |scales: &[f64]| judge(rows, scales, &unknowns_of);
+    let mut best = judge(&scales);
+    // All, their signs alone, and each alone: whichever leaves least.
+    let signs: Vec<f64> = found.iter().map(|k| k.signum()).collect();
+    let mut trials = vec![found.clone(), signs];
+    trials.extend((0..joints).filter(|j| found[*j] != 1.0).map(|j| {
+        let mut alone = vec![1.0; joints];
+        alone[j] = found[j];
+        alone
+    }));
+    let sum = |left: &Vec<f64>| left.iter().sum::<f64>();
+    let judged = trials.into_iter().filter_map(|trial| judge(&trial).map(|left| (trial, left)));
+    if let Some((trial, left)) = judged.min_by(|(_, a), (_, b)| sum(a).total_cmp(&sum(b))) {
+        if best.as_ref().is_none_or(|best| is_less(&left, best)) {
+            (scales, best) = (trial, Some(left));
+        }
+    }
+    // A joint that does not need its scale has none; one whose size says nothing has only its sign.
+    for joint in 0..joints {
+        for simpler in [1.0, scales[joint].signum()] {
+            let mut without = scales.clone();
+            without[joint] = simpler;
+            if without != scales {
+                let left = judge(&without);
+                if left.as_ref().is_some_and(|left| best.as_ref().is_none_or(|best| !is_less(best, left))) {
+                    (scales, best) = (without, left);
+                }
+            }
+        }
+    }
+    scales
+}
+
+/// The factor that makes a joint's torque most like that of the description, friction and bias aside; one where it may be one.
+fn likely(rows: &[Row], joint: usize) -> f64 {
+    let (mut matrix, mut right) =
+        (SMatrix::<f64, COLUMNS, COLUMNS>::zeros(), SVector::<f64, COLUMNS>::zeros());
+    let mut square = 0.0;
+    for row in rows {
+        let own = own_terms(row, joint, SHAPE);
+        let columns = SVector::from([torque(row, joint), own[BIAS], own[COULOMB], own[VISCOUS]]);
+        let model = torque(row, joint) - row.unexplained[joint];
+        matrix += columns * columns.transpose();
+        right += columns * model;
+        square += model * model;
+    }
+    let Some(inverse) = matrix.try_inverse() else { return 1.0 };
+    let found = inverse * right;
+    let left = (square - found.dot(&right)).max(0.0) / rows.len() as f64;
+    let error = (left * TOGETHER * inverse[(0, 0)]).sqrt();
+    let scale = found[0];
+    if (scale - 1.0).abs() <= f64::max(LEAST, SIGNIFICANT * error) || scale == 0.0 || !scale.is_finite() {
+        1.0
+    } else if (scale + 1.0).abs() <= LEAST {
+        -1.0
+    } else {
+        scale
+    }
+}
+
+/// What held-out blocks leave with these scales, in units of the measured torque.
+fn judge(rows: &[Row], scales: &[f64], unknowns_of: impl Fn(&[f64], &[Row]) -> Unknowns) -> Option<Vec<f64>> {
+    let rows: Vec<Row> = rows.iter().map(|row| scaled(row, scales)).collect();
+    let unknowns = unknowns_of(scales, &rows);
+    let used = vec![true; rows.len()];
+    let unexplained: Vec<_> = rows.iter().map(|row| row.unexplained.clone()).collect();
+    let weights = (0..scales.len()).map(|j| weight(&unexplained, &used, j)).collect();
+    let joints = Joints { weights, shapes: vec![SHAPE; scales.len()] };
+    let HeldOut { scores, .. } = hold_out(&unknowns, &joints, &rows, &used, &CHANGES)?;
+    let growth: f64 = scales.iter().map(|scale| 2.0 * scale.abs().ln()).sum();
+    Some(scores.iter().map(|score| score - growth).collect())
+}

@@ -1,0 +1,121 @@
+//! How far the unknowns may be from what was found: rows of a log do not err independently.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::folds::{mean_square, HeldOut};
+use super::hysteresis::WIDTHS;
+use super::normal::{columns, kept_back, torque, Joints, Normal};
+use super::rows::Row;
+use super::solve::{transposed_product, Solution};
+use super::unknowns::{Unknowns, HYSTERESIS};
+
+/// The longest lag of a correlation, as a part of the rows.
+const LONGEST_LAG: usize = 4;
+/// Correlations smaller than this end the sum.
+const UNCORRELATED: f64 = 0.05;
+/// Stretches of the log whose errors count as independent of each other.
+const CLUSTERS: usize = 20;
+/// Torque sensors are trimmed to about a per cent (one standard deviation). Masses that follow such an error explain it, so
+/// that no log shows it.
+pub(super) const TORQUE_SCALE: f64 = 0.01;
+/// Hysteresis levels off at another torque than the width found says: half of the way to the next width that was tried is one
+/// standard deviation.
+const HALF_WAY: f64 = 0.5;
+
+/// How much a row of one joint counts: one over its mean square, and over the number of rows that err together.
+pub(super) fn weight(residuals: &[DVector<f64>], used: &[bool], joint: usize) -> f64 {
+    let square = mean_square(residuals, used, joint).max(f64::MIN_POSITIVE);
+    1.0 / (square * correlated_rows(residuals, joint, square))
+}
+
+/// So many rows say as much as one whose error is independent of the others'.
+fn correlated_rows(residuals: &[DVector<f64>], joint: usize, square: f64) -> f64 {
+    let count = residuals.len();
+    let mut sum = 1.0;
+    for lag in 1..count / LONGEST_LAG {
+        let products = (lag..count).map(|k| residuals[k][joint] * residuals[k - lag][joint]);
+        let correlation = products.sum::<f64>() / ((count - lag) as f64 * square);
+        if correlation < UNCORRELATED {
+            break;
+        }
+        sum += 2.0 * correlation;
+    }
+    sum
+}
+
+/// The covariance of the unknowns. Weights assume that errors have nothing to do with the motion; what hysteresis leaves has.
+/// Where the spread of what stretches of the log pull at an unknown, by their held-out residuals, is larger, it counts
+/// instead (cluster-robust covariance: Liang and Zeger 1986). What the scale of a torque may be off by, and hysteresis of a
+/// form that levels off earlier or later, is added as what it would move the unknowns by (consider covariance).
+pub(super) fn covariance(
+    unknowns: &Unknowns,
+    joints: &Joints,
+    rows: &[Row],
+    used: &[bool],
+    held_out: &HeldOut,
+    solution: &Solution,
+) -> Option<DMatrix<f64>> {
+    let kept = rows.iter().zip(used).filter(|(_, used)| **used).map(|(row, _)| row);
+    let normal = Normal::of(unknowns, joints, kept);
+    let assumed = solution.covariance(unknowns, &normal)?;
+    let derivative = unknowns.derivative(&solution.z);
+    let mut pulls = vec![DVector::zeros(unknowns.columns()); CLUSTERS];
+    let mut entries = vec![];
+    for (index, row) in rows.iter().enumerate().filter(|(index, _)| used[*index]) {
+        let pull = &mut pulls[index * CLUSTERS / rows.len()];
+        for (joint, weight) in joints.weights.iter().enumerate() {
+            entries.clear();
+            columns(unknowns, joints, row, joint, &mut entries);
+            let error = weight * held_out.residuals[index][joint];
+            entries.iter().for_each(|&(column, value)| pull[column] += error * value);
+        }
+    }
+    let mut spread = DVector::<f64>::zeros(unknowns.len());
+    for pull in &pulls {
+        let moved = &assumed * transposed_product(&derivative, pull);
+        spread += moved.component_mul(&moved);
+    }
+    let spread = spread.zip_map(&jackknife(&held_out.solutions), f64::max);
+    // What the description said keeps its part of the uncertainty.
+    let wider = |k: usize| {
+        let prior = assumed.row(k).component_div(&solution.units.transpose()).norm_squared();
+        ((spread[k] + prior) / assumed[(k, k)].max(f64::MIN_POSITIVE)).max(1.0).sqrt()
+    };
+    let wider: Vec<f64> = (0..unknowns.len()).map(wider).collect();
+    let mut covariance =
+        DMatrix::from_fn(wider.len(), wider.len(), |a, b| assumed[(a, b)] * wider[a] * wider[b]);
+    for joint in 0..joints.weights.len() {
+        let mut consider = |error: &dyn Fn(&Row) -> f64| {
+            let mut pull = DVector::zeros(unknowns.columns());
+            let mut entries = vec![];
+            for (_, row) in rows.iter().enumerate().filter(|(index, _)| used[*index]) {
+                entries.clear();
+                columns(unknowns, joints, row, joint, &mut entries);
+                let error = joints.weights[joint] * error(row);
+                entries.iter().for_each(|&(column, value)| pull[column] += error * value);
+            }
+            let moved = &assumed * transposed_product(&derivative, &pull);
+            covariance.ger(1.0, &moved, &moved, 1.0);
+        };
+        consider(&|row| TORQUE_SCALE * torque(row, joint));
+        let Some(width) = joints.shapes[joint].hysteresis else { continue };
+        let share = solution.z[unknowns.term(joint, HYSTERESIS)];
+        let size =
+            |width: usize| rows.iter().map(|row| kept_back(row, joint, width).powi(2)).sum::<f64>().sqrt();
+        for other in [width.saturating_sub(1), (width + 1).min(WIDTHS.len() - 1)] {
+            let as_large = size(width) / size(other).max(f64::MIN_POSITIVE);
+            consider(&|row| {
+                HALF_WAY * share * (as_large * kept_back(row, joint, other) - kept_back(row, joint, width))
+            });
+        }
+    }
+    Some(covariance)
+}
+
+/// The variance of each unknown by what leaving out each block changes (jackknife: Quenouille 1956).
+fn jackknife(solutions: &[DVector<f64>]) -> DVector<f64> {
+    let count = solutions.len() as f64;
+    let mean = solutions.iter().sum::<DVector<f64>>() / count;
+    let squares = solutions.iter().map(|z| (z - &mean).map(|d| d * d)).sum::<DVector<f64>>();
+    squares * ((count - 1.0) / count)
+}
