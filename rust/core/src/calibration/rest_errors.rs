@@ -81,12 +81,18 @@ pub(super) fn rest_errors(
         noise.model_time[j] = time;
     }
     noise.friction = (0..robot.nv())
-        .map(|j| match events(&stretches, j, spacing) {
-            Some(square) => {
-                let deviation = HEAVY_TAIL * (square / FrictionErrors::response(event_gain)).sqrt();
-                deviation.max(KNOWN_SHARE * coulomb[j])
+        .map(|j| {
+            // What only one of the gains shows is no friction: noise of velocities, accelerations.
+            let shown = |torque: &dyn Fn(&Stretch) -> &Vec<Vec<f64>>, gain: f64| {
+                Some(events(&stretches, torque, j, spacing)? / FrictionErrors::response(gain))
+            };
+            let slow = shown(&|stretch| &stretch.slow, gains[0]);
+            match slow.zip(shown(&|stretch| &stretch.fast, event_gain)) {
+                Some((slow, fast)) => {
+                    (HEAVY_TAIL * slow.min(fast).sqrt()).max(KNOWN_SHARE * coulomb[j])
+                }
+                None => UNKNOWN_SHARE * coulomb[j],
             }
-            None => UNKNOWN_SHARE * coulomb[j],
         })
         .collect();
     let tails = tails(robot, log, parts, skipped, step, &gains, &noise)?;
@@ -221,15 +227,21 @@ fn slow_errors(stretches: &[Stretch], joint: usize, white: f64, gain: f64) -> Op
 }
 
 /// The mean square of what a joint's torque does at starts and stops beyond what it does in motion; none of too few.
-fn events(stretches: &[Stretch], joint: usize, spacing: f64) -> Option<f64> {
+fn events(
+    stretches: &[Stretch],
+    torque: &dyn Fn(&Stretch) -> &Vec<Vec<f64>>,
+    joint: usize,
+    spacing: f64,
+) -> Option<f64> {
     let [event, before] = [EVENT_TIME, BEFORE_TIME].map(|time| (time / spacing).ceil() as usize);
     let (mut at_events, mut in_motion) = (vec![], vec![]);
     for stretch in stretches {
         let slow: Vec<bool> = stretch.velocity.iter().map(|v| v[joint].abs() < SLOW).collect();
         let mut row = before;
         while row + event <= slow.len() {
-            let start = stretch.fast[row - before][joint];
-            let peak = stretch.fast[row..row + event].iter().map(|r| (r[joint] - start).abs()).fold(0.0, f64::max);
+            let torque = torque(stretch);
+            let start = torque[row - before][joint];
+            let peak = torque[row..row + event].iter().map(|r| (r[joint] - start).abs()).fold(0.0, f64::max);
             if slow[row] != slow[row - 1] {
                 at_events.push(peak * peak);
                 row += 1;

@@ -48,8 +48,10 @@ impl Tail {
         peaks.sort_by(f64::total_cmp);
         let first = ((1.0 - TAIL_SHARE) * peaks.len() as f64) as usize;
         let largest = peaks.get(first..).filter(|largest| largest.len() >= FEWEST_PEAKS)?;
-        let excess = largest.iter().map(|peak| peak - largest[0]).sum::<f64>() / (largest.len() - 1) as f64;
-        Some(Tail { gain, level: largest[0], scale: excess })
+        let others = (largest.len() - 1) as f64;
+        let excess = largest.iter().map(|peak| peak - largest[0]).sum::<f64>() / others;
+        // One standard deviation more: a scale that is too small costs more false alarms than one too large saves.
+        Some(Tail { gain, level: largest[0], scale: excess * (1.0 + others.sqrt().recip()) })
     }
 }
 
@@ -113,7 +115,7 @@ mod tests {
         // Quantiles of an exponential distribution of scale 3.
         let mut peaks: Vec<f64> = (0..1000).map(|k| -3.0 * (1.0 - (f64::from(k) + 0.5) / 1000.0).ln()).collect();
         let tail = Tail::of_peaks(8.0, &mut peaks).expect("enough peaks");
-        assert!((tail.scale - 3.0).abs() < 0.1 && (tail.level - 3.0 * 5.0_f64.ln()).abs() < 0.1, "{tail:?}");
+        assert!((tail.scale / (1.0 + 199.0_f64.sqrt().recip()) - 3.0).abs() < 0.1 && (tail.level - 3.0 * 5.0_f64.ln()).abs() < 0.1, "{tail:?}");
         assert_eq!(Tail::of_peaks(8.0, &mut [1.0; 20]), None);
     }
 }
