@@ -67,10 +67,13 @@ def _draw(panels: Any, arm: str, stretch: Stretch, *, labels: bool) -> None:
         axes.set_ylim(-limit, limit)
         if labels:
             axes.set_ylabel("external torque [Nm]")
-    for start, end, link, force in stretch.contacts:
+    for number, (start, end, link, force) in enumerate(stretch.contacts):
+        if end > SHOWN:
+            continue
+        # Names of contacts in quick succession stand at two heights.
         before.text(
             0.5 * (start + end),
-            0.98 * limit,
+            (0.98 if number % 2 == 0 else 0.7) * limit,
             f"{_short(link)}\n{force:.0f} N",
             ha="center",
             va="top",
