@@ -54,7 +54,9 @@ def heard(run: sim.ImperfectRun, *onsets: float, collision: tuple[float, float] 
 
 
 def judged(force: float, delay: float | None, signal: float = 10.0) -> JudgedContact:
-    return JudgedContact("iiwa_link_6", force, 0.5, signal, {"calibrated": delay})
+    return JudgedContact(
+        "iiwa_link_6", force, 0.5, signal, {"calibrated": delay}, {"calibrated": delay is None}
+    )
 
 
 def test_a_contact_is_detected_by_an_onset_within_it(touched: sim.ImperfectRun) -> None:
@@ -65,6 +67,8 @@ def test_a_contact_is_detected_by_an_onset_within_it(touched: sim.ImperfectRun) 
     }
     first, second = judge_contacts(touched, told)
     assert first.delays == {"early": None, "prompt": pytest.approx(0.03, abs=2e-3), "late": None}
+    # An onset before the contact hides it: what is reported goes on.
+    assert second.reported_before == {"early": True, "prompt": False, "late": False}
     assert second.delays["prompt"] == pytest.approx(0.45, abs=2e-3)
     assert (first.link, first.force, first.duration) == ("iiwa_link_6", pytest.approx(30.0), 0.5)
 
@@ -80,10 +84,11 @@ def test_onsets_in_free_motion_are_false(touched: sim.ImperfectRun) -> None:
     # The first falls into the settling, the second where the first contact would be, 0.5 s later for it.
     said = heard(free, 0.1, SETTLING + 1.2, collision=(5.0, 6.0))
     # One onset between the contacts, one while the first fades, one within the second.
-    pauses = heard(touched, 1.5 + 0.5 * LINGERING, 3.0, 4.1)
+    pauses = heard(touched, 1.5 + 0.5 * LINGERING, 3.0, 4.1, collision=(3.0, 3.5))
     figures = judge_free(free, said, touched, pauses)
     assert figures.onsets == 1
     assert figures.between == 1
+    assert figures.between_share == pytest.approx(0.5 / (6.0 - SETTLING - 2 * (0.5 + LINGERING)), rel=1e-2)
     assert figures.chance == 0.5
     assert figures.seconds == pytest.approx(10.0 - SETTLING)
     assert figures.share == pytest.approx(1.0 / (10.0 - SETTLING), rel=1e-2)
@@ -96,6 +101,7 @@ def test_scores_count_what_is_in_the_torques() -> None:
     assert (figures.contacts, figures.detected, figures.in_torques) == (4, 0.5, 3)
     assert figures.detected_in_torques == pytest.approx(2 / 3)
     assert (figures.delay, figures.delay_90) == (pytest.approx(0.06), pytest.approx(0.076))
+    assert figures.reported_before == 0.5
     assert [len(in_band(contacts, band)) for band in BANDS] == [1, 1, 2]
     assert np.isnan(detection([], "calibrated").detected)
 

@@ -28,6 +28,8 @@ class JudgedContact:
     # torque sensor: where it is small, no monitor can see the contact.
     signal: float
     delays: dict[str, float | None]  # by monitor, from the start of the force to an onset [s]; None: missed
+    # By monitor, whether a contact was reported already when this one began, so that it could give no onset.
+    reported_before: dict[str, bool]
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,7 @@ class FreeMotion:
     share: float  # of the time in collision
     chance: float  # share of the contacts in whose place an onset would have been without them
     between: int  # onsets outside contacts in the record with contacts
+    between_share: float  # of the time outside contacts in that record, in collision
     rms: tuple[float, ...]  # (nv,) of the external torque [Nm]
 
 
@@ -52,6 +55,9 @@ def judge_contacts(run: ImperfectRun, heard: Mapping[str, Heard]) -> tuple[Judge
             duration=each.contact.duration,
             signal=float(np.max(np.abs(each.external_torque) / noise)),
             delays={name: _delay(run, told, each) for name, told in heard.items()},
+            reported_before={
+                name: bool(told.collision[max(each.rows.start - 1, 0)]) for name, told in heard.items()
+            },
         )
         for each in run.truth.contacts
     )
@@ -65,13 +71,14 @@ def _delay(run: ImperfectRun, heard: Heard, contact: RecordedContact) -> float |
 def judge_free(run: ImperfectRun, heard: Heard, touched: ImperfectRun, heard_touched: Heard) -> FreeMotion:
     """Of a run without contact, and of the pauses of one with contacts."""
     time = run.truth.time
-    settled = time > time[0] + SETTLING
+    settled, pauses = time > time[0] + SETTLING, _pauses(touched)
     return FreeMotion(
         seconds=float(time[-1] - time[0] - SETTLING),
         onsets=int(heard.onset[settled].sum()),
         share=float(heard.collision[settled].mean()),
         chance=_by_chance(time, time[heard.onset & settled], touched),
-        between=_between(touched, heard_touched),
+        between=int(heard_touched.onset[pauses].sum()),
+        between_share=float(heard_touched.collision[pauses].mean()),
         rms=tuple(np.sqrt(np.mean(heard.external_torque[settled] ** 2, axis=0)).tolist()),
     )
 
@@ -86,9 +93,10 @@ def _by_chance(time: NDArray[np.float64], onsets: NDArray[np.float64], touched: 
     return float(np.mean(hits))
 
 
-def _between(touched: ImperfectRun, heard: Heard) -> int:
+def _pauses(touched: ImperfectRun) -> NDArray[np.bool_]:
+    """Rows outside contacts."""
     time = touched.truth.time
-    outside = time > time[0] + SETTLING
+    outside: NDArray[np.bool_] = time > time[0] + SETTLING
     for each in touched.truth.contacts:
         outside &= (time < each.contact.start) | (time > each.contact.end + LINGERING)
-    return int((heard.onset & outside).sum())
+    return outside

@@ -39,7 +39,17 @@ def draw_false_onsets(axes: Any, study: Study) -> None:
     _bars(axes, study, lambda trials, name: false_onsets(trials, name).per_hour)
     axes.set_ylim(0.0, 4.0 * max(10.0, axes.dataLim.y1))
     axes.set_ylabel("per hour of motion without contact")
-    axes.set_title("False onsets")
+    axes.set_title("False onsets in free motion")
+
+
+def draw_between(axes: Any, study: Study) -> None:
+    """After each contact."""
+    axes.set_yscale("symlog", linthresh=1.0)
+    _bars(axes, study, lambda trials, name: false_onsets(trials, name).per_contact, digits=1)
+    axes.set_ylim(0.0, 2.0 * max(1.0, axes.dataLim.y1))
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.set_ylabel("per contact, from 0.1 s after it to the next")
+    axes.set_title("False onsets between contacts")
 
 
 def draw_time_in_contact(axes: Any, study: Study) -> None:
@@ -47,12 +57,13 @@ def draw_time_in_contact(axes: Any, study: Study) -> None:
     _bars(axes, study, lambda trials, name: 100.0 * false_onsets(trials, name).collision)
     axes.set_ylim(0.0, 108.0)
     axes.set_ylabel("% of motion without contact")
-    axes.set_title("Time in which a contact is reported falsely")
+    axes.set_title("Time with a false report")
 
 
 def draw_delays(axes: Any, study: Study) -> None:
     """Median, and a line to where 90 % are detected."""
     _bars(axes, study, lambda trials, name: 1e3 * detection(contacts_of(trials), name).delay, text=False)
+    longest = 0.0
     for place, arm in enumerate(_arms(study)):
         for number, name in enumerate(MONITORS):
             figures = detection(contacts_of(study.of(arm)), name)
@@ -60,12 +71,21 @@ def draw_delays(axes: Any, study: Study) -> None:
             axes.plot(2 * [_x(place, number)], ends, color=COLOURS[name], lw=1.5)
             if np.isnan(figures.delay):
                 axes.text(_x(place, number), 0.0, "none", rotation=90, ha="center", va="bottom", fontsize=8)
+            # Chance onsets of a monitor that reports all the time may be late without end.
+            longest = max(longest, 1e3 * figures.delay_90 if name != "default" else 0.0)
+    axes.set_ylim(0.0, 1.05 * longest if longest else None)
     axes.set_ylabel("ms after the start of the force")
     axes.set_title("Delay: median, line up to 90 %")
 
 
 def _bars(
-    axes: Any, study: Study, value: Callable[[list[Trial], str], float], *, text: bool = True, **style: Any
+    axes: Any,
+    study: Study,
+    value: Callable[[list[Trial], str], float],
+    *,
+    text: bool = True,
+    digits: int = 0,
+    **style: Any,
 ) -> None:
     arms = _arms(study)
     for number, name in enumerate(MONITORS):
@@ -76,12 +96,12 @@ def _bars(
         if text:
             for place, height in zip(places, heights, strict=True):
                 axes.annotate(
-                    f"{height:.0f}",
+                    f"{height:.{digits}f}",
                     (place, height),
                     (0, 2),
                     textcoords="offset points",
                     ha="center",
-                    fontsize=8,
+                    fontsize=7.5,
                     color=TEXT,
                 )
     axes.set_xticks(range(len(arms)), [arm.replace("_", "\n") for arm in arms])

@@ -38,7 +38,9 @@ NOTES = (
     f"in torques: contacts whose largest torque at a joint is {IN_TORQUES:g} standard deviations or more",
     "of the noise of its sensor; and the share of these that is detected.",
     "Nm by joint: root mean square over trials; free motion: of the external torque.",
-    "in contact: share of free motion in which a contact is reported. between: onsets between contacts.",
+    "reported before: a contact was reported already when this one began, so that it gives no onset.",
+    "in contact: share of the time in which a contact is reported. between contacts: from 0.1 s after one to",
+    "the next; torque that the gears' hysteresis keeps after a contact can be over a threshold there.",
 )
 
 
@@ -62,7 +64,10 @@ def _detection(study: Study, arms: Sequence[str]) -> Table:
     table = sheet(
         f"Contacts of {low:g} to {high:g} N",
         ("", ""),
-        ("\nn", "detected\n%", "by chance\n%", "in\ntorques", "of these\n%", "delay\nms", "90 %\nms"),
+        (
+            *("\nn", "detected\n%", "by chance\n%", "reported\nbefore %"),
+            *("in\ntorques", "of these\n%", "delay\nms", "90 %\nms"),
+        ),
     )
     for name, trials in _groups(study, arms):
         table.add_section()
@@ -75,6 +80,7 @@ def _detection(study: Study, arms: Sequence[str]) -> Table:
                 str(figures.contacts),
                 scaled(figures.detected, 100),
                 scaled(false_onsets(trials, each).chance, 100),
+                scaled(figures.reported_before, 100),
                 str(figures.in_torques),
                 scaled(figures.detected_in_torques, 100),
                 scaled(figures.delay, 1e3),
@@ -84,7 +90,10 @@ def _detection(study: Study, arms: Sequence[str]) -> Table:
 
 
 def _free(study: Study, arms: Sequence[str]) -> Table:
-    headers = ("free motion\nmin", "false\nonsets", "\nper h", "in contact\n%", "\nbetween")
+    headers = (
+        *("free motion\nmin", "false\nonsets", "\nper h", "in contact\n%"),
+        *("between contacts\nonsets", "\nper contact", "in contact\n%"),
+    )
     table = sheet("Motion without contact", ("", ""), headers)
     for name, trials in _groups(study, arms):
         table.add_section()
@@ -98,6 +107,8 @@ def _free(study: Study, arms: Sequence[str]) -> Table:
                 scaled(false.per_hour, 1),
                 scaled(false.collision, 100, 1),
                 str(false.between),
+                scaled(false.per_contact, 1, 1),
+                scaled(false.between_share, 100, 1),
             )
     return table
 

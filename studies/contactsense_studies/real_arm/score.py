@@ -27,6 +27,7 @@ class Detection:
     detected_in_torques: float  # share of those
     delay: float  # median of the detected [s]
     delay_90: float  # 90 % of the detected are at least so quick [s]
+    reported_before: float  # share at whose start a contact was reported already
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,8 @@ class FalseOnsets:
     collision: float  # share of the time in collision
     chance: float  # share of contacts that would be detected if they were not there
     between: int  # onsets outside contacts in the records with contacts
+    per_contact: float  # such onsets for each contact
+    between_share: float  # share of the time outside contacts in collision
 
 
 def detection(contacts: Sequence[JudgedContact], monitor: str) -> Detection:
@@ -53,12 +56,14 @@ def detection(contacts: Sequence[JudgedContact], monitor: str) -> Detection:
         detected_in_torques=mean(strong),
         delay=float(np.median(found)) if len(found) else np.nan,
         delay_90=float(np.quantile(found, 0.9)) if len(found) else np.nan,
+        reported_before=mean([each.reported_before[monitor] for each in contacts]),
     )
 
 
 def false_onsets(trials: Sequence[Trial], monitor: str) -> FalseOnsets:
     """Figures of a monitor."""
     free = [trial.free[monitor] for trial in trials]
+    between, contacts = sum(each.between for each in free), sum(len(trial.contacts) for trial in trials)
     seconds, onsets = sum(each.seconds for each in free), sum(each.onsets for each in free)
     return FalseOnsets(
         seconds=seconds,
@@ -66,7 +71,9 @@ def false_onsets(trials: Sequence[Trial], monitor: str) -> FalseOnsets:
         per_hour=3600.0 * onsets / seconds if seconds else np.nan,
         collision=mean([each.share for each in free]),
         chance=mean([each.chance for each in free]),
-        between=sum(each.between for each in free),
+        between=between,
+        per_contact=between / contacts if contacts else np.nan,
+        between_share=mean([each.between_share for each in free]),
     )
 
 
