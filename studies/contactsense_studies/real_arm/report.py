@@ -32,15 +32,15 @@ NOTES = (
     *(f"{LETTERS[name]}: {TITLES[name]}." for name in MONITORS),
     *(f"{name}: {kind.about}." for name, kind in ARMS.items()),
     f"Thresholds of this arm: {MARGIN:g} times the largest external torque of other free motion.",
-    "detected: an onset while the contact lasts. by chance: share of the contacts that would count as",
+    "detected: an onset while the contact lasts. chance: share of the contacts that would count as",
     "detected if they were not there. delay: from the start of the force, which takes up to 0.15 s to rise,",
     "to the onset: median, and 90 % of the detected.",
     f"in torques: contacts whose largest torque at a joint is {IN_TORQUES:g} standard deviations or more",
     "of the noise of its sensor; and the share of these that is detected.",
     "Nm by joint: root mean square over trials; free motion: of the external torque.",
-    "reported before: a contact was reported already when this one began, so that it gives no onset.",
-    "in contact: share of the time in which a contact is reported. between contacts: from 0.1 s after one to",
-    "the next; torque that the gears' hysteresis keeps after a contact can be over a threshold there.",
+    "before: a contact was reported already when this one began, so that it gives no onset.",
+    "free: motion without contact. between: from 0.1 s after a contact to the next. Hysteresis keeps torque",
+    "after a contact, which may be over a threshold.",
 )
 
 
@@ -65,7 +65,7 @@ def _detection(study: Study, arms: Sequence[str]) -> Table:
         f"Contacts of {low:g} to {high:g} N",
         ("", ""),
         (
-            *("\nn", "detected\n%", "by chance\n%", "reported\nbefore %"),
+            *("\nn", "detected\n%", "chance\n%", "before\n%"),
             *("in\ntorques", "of these\n%", "delay\nms", "90 %\nms"),
         ),
     )
@@ -91,8 +91,8 @@ def _detection(study: Study, arms: Sequence[str]) -> Table:
 
 def _free(study: Study, arms: Sequence[str]) -> Table:
     headers = (
-        *("free motion\nmin", "false\nonsets", "\nper h", "in contact\n%"),
-        *("between contacts\nonsets", "\nper contact", "in contact\n%"),
+        *("free\nmin", "false\nonsets", "\nper h", "reported\n% of time"),
+        *("between:\nonsets", "per\ncontact", "reported\n% of time"),
     )
     table = sheet("Motion without contact", ("", ""), headers)
     for name, trials in _groups(study, arms):
