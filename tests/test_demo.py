@@ -6,6 +6,7 @@ import json
 import sys
 from functools import lru_cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,9 +15,10 @@ from rich.console import Console
 from contactsense import InputError, demo
 from contactsense.cli.app import run as run_command
 from contactsense.demo.arm import FORCE_RANGE, LINKS, ROUNDS, choose
+from contactsense.demo.score import HitScorer
 from contactsense.demo.settings import noise_passed
 from contactsense.demo.table import print_result
-from contactsense.sim import TorqueNoise
+from contactsense.sim import Push, TorqueNoise
 
 NOISE = (2.0, 0.1)
 
@@ -128,6 +130,22 @@ def test_an_imperfect_arm_has_the_same_contacts() -> None:
     # A located contact may be off, not without saying so.
     assert all(hit.point_error < 5 * hit.point_std for hit in other.located)
     assert result(1).imperfect is None
+
+
+def test_a_report_that_began_before_a_hit_does_not_detect_it() -> None:
+    run = result(1)
+    push = Push("iiwa_link_7", [0.0, 0.0, 0.0], [0.0, 0.0, 1.0], 50.0, 1.0, 0.05)
+    threshold = np.full(7, 0.05)
+
+    def scored(*onsets: bool) -> demo.HitResult:
+        scorer = HitScorer(run.robot, push, 1, threshold, np.zeros(7))
+        for tick, onset in enumerate(onsets):
+            report = SimpleNamespace(collision=True, onset=onset, contacts=(), collision_torque=np.ones(7))
+            scorer.update(1.0 + 1e-3 * tick, np.zeros(7), report)
+        return scorer.result()
+
+    assert scored(False, False).delay is None
+    assert scored(False, True).delay == pytest.approx(1e-3)
 
 
 def test_an_imperfect_arm_is_for_the_arm_alone() -> None:
