@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 from contactsense import Robot
-from contactsense.sim import ImperfectArm
 
 from ..example_robots import example_robot, panda
+
+if TYPE_CHECKING:
+    from contactsense.sim import ImperfectArm
 
 
 @dataclass(frozen=True)
@@ -33,14 +36,27 @@ def _kinova() -> Robot:
     return example_robot("kinova_description/robots/kinova.urdf")
 
 
+# The options of the command name the arms, and need no simulator for it.
+def _typical(robot: Robot, seed: int) -> ImperfectArm:
+    from contactsense.sim import ImperfectArm
+
+    return ImperfectArm.typical(robot, seed)
+
+
+def _motor_currents(robot: Robot, seed: int) -> ImperfectArm:
+    from contactsense.sim import ImperfectArm
+
+    return ImperfectArm.motor_currents(robot, seed)
+
+
 _SENSORS = "torque sensors between gears and links"
 ARMS = {
-    "panda": ArmKind(f"Panda, {_SENSORS}", panda, ImperfectArm.typical),
-    "iiwa14": ArmKind(f"iiwa14, {_SENSORS}", _iiwa14, ImperfectArm.typical),
-    "ur5": ArmKind(f"UR5, {_SENSORS}", _ur5, ImperfectArm.typical),
-    "kinova": ArmKind(f"Kinova Jaco 2, {_SENSORS}", _kinova, ImperfectArm.typical),
+    "panda": ArmKind(f"Panda, {_SENSORS}", panda, _typical),
+    "iiwa14": ArmKind(f"iiwa14, {_SENSORS}", _iiwa14, _typical),
+    "ur5": ArmKind(f"UR5, {_SENSORS}", _ur5, _typical),
+    "kinova": ArmKind(f"Kinova Jaco 2, {_SENSORS}", _kinova, _typical),
     # As on the real one: all friction and the rotors are in the torque.
-    "ur5_currents": ArmKind("UR5, torques are motor currents", _ur5, ImperfectArm.motor_currents),
+    "ur5_currents": ArmKind("UR5, torques are motor currents", _ur5, _motor_currents),
 }
 
 
