@@ -6,22 +6,31 @@ import json
 import sys
 from functools import lru_cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 from contactsense import InputError, demo
 from contactsense.cli.app import run as run_command
 from contactsense.demo.arm import FORCE_RANGE, LINKS, ROUNDS, choose
+from contactsense.demo.score import HitScorer
 from contactsense.demo.settings import noise_passed
-from contactsense.sim import TorqueNoise
+from contactsense.demo.table import print_result
+from contactsense.sim import Push, TorqueNoise
 
 NOISE = (2.0, 0.1)
 
 
 @lru_cache
 def result(seed: int, noise: tuple[float, float] = (0.0, 0.0)) -> demo.DemoResult:
-    return demo.run(seed=seed, noise=noise)
+    return demo.run(seed=seed, noise=noise, imperfect=False)
+
+
+@lru_cache
+def imperfect(seed: int) -> demo.DemoResult:
+    return demo.run(seed=seed)
 
 
 @pytest.mark.parametrize("seed", [1, 4])
@@ -81,7 +90,7 @@ def test_same_seed_same_result() -> None:
     def data(run: demo.DemoResult) -> dict[str, object]:
         return {**demo.as_data(run), "monitor": None}
 
-    assert data(demo.run(seed=1, noise=NOISE)) == data(result(1, NOISE))
+    assert data(demo.run(seed=1, noise=NOISE, imperfect=False)) == data(result(1, NOISE))
     assert data(result(1, NOISE)) != data(result(4, NOISE))
 
 
@@ -94,6 +103,54 @@ def test_progress() -> None:
     assert seen[0].time == 0.0
     assert seen[-1].time > 0.98 * seen[-1].end
     assert seen[-1].planned == len(seen[-1].hits) == len(run.hits)
+
+    assert [progress.imperfect for progress in seen] == [False] * (len(seen) - 1) + [True]
+    assert demo.as_data(run)["imperfect"] == demo.as_data(imperfect(1))["imperfect"]
+
+
+def test_an_imperfect_arm_has_the_same_contacts() -> None:
+    run = imperfect(1)
+    other = run.imperfect
+    assert other is not None
+    assert [(hit.link, hit.force, hit.start) for hit in other.hits] == [
+        (hit.link, hit.force, hit.start) for hit in run.hits
+    ]
+    peak = [hit.force for hit in run.hits]
+    assert other.signals.true_force.max() == pytest.approx(max(peak), rel=0.01)
+    # Nothing of the ideal run changes.
+    assert {**demo.as_data(run), "monitor": None, "imperfect": None} == {
+        **demo.as_data(result(1)),
+        "monitor": None,
+        "imperfect": None,
+    }
+    # Most impacts are detected, later than with ideal torques, and false alarms are few.
+    assert other.detected >= 5
+    assert other.false_alarms <= 6
+    assert np.median([hit.delay for hit in other.hits if hit.delay is not None]) < 0.03
+    # A located contact may be off, not without saying so.
+    assert all(hit.point_error < 5 * hit.point_std for hit in other.located)
+    assert result(1).imperfect is None
+
+
+def test_a_report_that_began_before_a_hit_does_not_detect_it() -> None:
+    run = result(1)
+    push = Push("iiwa_link_7", [0.0, 0.0, 0.0], [0.0, 0.0, 1.0], 50.0, 1.0, 0.05)
+    threshold = np.full(7, 0.05)
+
+    def scored(*onsets: bool) -> demo.HitResult:
+        scorer = HitScorer(run.robot, push, 1, threshold, np.zeros(7))
+        for tick, onset in enumerate(onsets):
+            report = SimpleNamespace(collision=True, onset=onset, contacts=(), collision_torque=np.ones(7))
+            scorer.update(1.0 + 1e-3 * tick, np.zeros(7), report)
+        return scorer.result()
+
+    assert scored(False, False).delay is None
+    assert scored(False, True).delay == pytest.approx(1e-3)
+
+
+def test_an_imperfect_arm_is_for_the_arm_alone() -> None:
+    assert "imperfect" not in demo.as_data(result(1))
+    assert "imperfect" in demo.as_data(imperfect(1))
 
 
 def test_thresholds_follow_the_noise() -> None:
@@ -145,12 +202,16 @@ def test_json_and_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
         assert hit["link_right"] == (hit["named"] == hit["link"])
     assert data["summary"]["located"] == sum(hit["located"] for hit in data["hits"])
     assert data["monitor"]["calls"] == 8000
+    other = data["imperfect"]
+    assert other["calibration_s"] == 30.0
+    assert [hit["link"] for hit in other["hits"]] == [hit["link"] for hit in data["hits"]]
+    assert other["summary"]["detected"] == sum(hit["delay_ms"] is not None for hit in other["hits"])
     assert 0 < data["monitor"]["mean_us"] <= data["monitor"]["max_us"]
 
 
 def test_table_without_a_terminal(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     picture = tmp_path / "demo.png"
-    assert run_command(["demo", "--seed", "1", "--out", str(picture)]) == 0
+    assert run_command(["demo", "--seed", "1", "--no-imperfect", "--out", str(picture)]) == 0
     told = capsys.readouterr().out
     assert told.count("true link") == 1
     assert "\x1b" not in told
@@ -159,6 +220,20 @@ def test_table_without_a_terminal(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert told.count("[mm]") == 2
     assert "Picture:" in told
     assert picture.exists()
+
+
+def test_tables_say_which_torques_are_ideal(capsys: pytest.CaptureFixture[str]) -> None:
+    print_result(Console(width=100), imperfect(1), "demo.png")
+    told = capsys.readouterr().out
+    assert told.index("Ideal torques") < told.index("errors of a real one")
+    assert told.count("true link") == 2
+    compared = told[told.index("imperfect arm,") :]
+    ideal, other = imperfect(1), imperfect(1).imperfect
+    assert other is not None
+    (line,) = [line for line in compared.splitlines() if line.strip().startswith("detected")]
+    assert f"{ideal.detected} of 9" in line
+    assert f"{other.detected} of 9" in line
+    assert "Ideal torques: 9 of 9 contacts detected" in told
 
 
 @pytest.mark.parametrize("arguments", [["--robot", "talos"], ["--noise", "x", "1"], ["--gain", "-1"]])

@@ -14,6 +14,7 @@ from contactsense._pictures import picture_file
 from .bimbo2019.options import Options as BimboOptions
 from .example_robots import robot_of
 from .harness import AsJson, add_study, print_json
+from .real_arm.options import Options as RealArmOptions
 from .vorndamme2017.options import Options as VorndammeOptions
 
 app = typer.Typer(
@@ -88,4 +89,10 @@ add_study(
     "bimbo2019",
     "Contacts on a moving arm, located by a particle filter with three motion models.",
     BimboOptions,
+)
+add_study(
+    app,
+    "real_arm",
+    "Contacts on arms with the errors of real ones: detection and false onsets before and after calibration.",
+    RealArmOptions,
 )

@@ -46,3 +46,13 @@ def panda() -> Robot:
     share = share_folder()
     fingers = ("panda_finger_joint1", "panda_finger_joint2")
     return Robot.from_urdf(share / PANDA, package_dirs=share, locked_joints=fingers)
+
+
+def example_robot(file: str) -> Robot:
+    """An arm of example-robot-data, by its file below the folder of robots.
+
+    Raises:
+        MissingExtraError: example-robot-data is not installed.
+    """
+    share = share_folder()
+    return Robot.from_urdf(share / PACKAGE / "robots" / file, package_dirs=share)

@@ -9,7 +9,7 @@ from .markdown import number
 from .markdown import table as markdown
 
 HEADER = (
-    "noise of the torques",
+    "errors of the torques",
     "seeds",
     "detected",
     "delay",
@@ -21,9 +21,19 @@ HEADER = (
 )
 
 
+IMPERFECT = "errors of a real arm, calibrated"
+
+
 def reduce(raw: Raw) -> dict[str, Any]:
     """Counts and extremes of every label, all seeds pooled, and the counts of each seed."""
-    return {label: _pool(runs) for label, runs in raw.items()}
+    pooled = {label: _pool(runs) for label, runs in raw.items()}
+    others = [
+        {**run["imperfect"], "seed": run["seed"]}
+        for runs in raw.values()
+        for run in runs
+        if "imperfect" in run
+    ]
+    return {**pooled, IMPERFECT: _pool(others)} if others else pooled
 
 
 def _pool(runs: Any) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -34,6 +35,9 @@ def command(
     gain: Annotated[
         float | None, typer.Option(help="Observer gain in 1/s (default: 500, or 250 with noise).")
     ] = None,
+    imperfect: Annotated[
+        bool, typer.Option(help="Repeat the run of iiwa14 with the errors of a real arm, calibrated.")
+    ] = True,
     out: Annotated[Path, typer.Option(help="File to write the picture to.")] = Path("contactsense_demo.png"),
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
@@ -45,13 +49,20 @@ def command(
     from .table import live_table, print_result
 
     console = Console()
+    wanted = partial(
+        run,
+        robot=robot,
+        seed=seed,
+        noise=noise,
+        sensor_noise=sensor_noise,
+        gain=gain,
+        imperfect=imperfect,
+    )
     if as_json or not console.is_terminal:
-        result = run(robot=robot, seed=seed, noise=noise, sensor_noise=sensor_noise, gain=gain)
+        result = wanted()
     else:
         with live_table(console) as show:
-            result = run(
-                robot=robot, seed=seed, noise=noise, sensor_noise=sensor_noise, gain=gain, on_progress=show
-            )
+            result = wanted(on_progress=show)
     picture = save_picture(result, target)
     if as_json:
         print(json.dumps({**as_data(result), "picture": str(picture)}, indent=2, allow_nan=False))

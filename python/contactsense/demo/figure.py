@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from .._pictures import DETECTED, ESTIMATE, GREY, JOINTS, TEXT, TRUTH, picture_file, save_picture
 from .._robot_view import share_scale
 from .figure_robot import ROBOT_LEGEND, draw_robot
-from .result import DemoResult, HitResult, Signals, Standing
+from .result import DemoResult, HitResult, ImperfectResult, Scored, Signals, Standing
 
 _LEFT, _RIGHT = 0.07, 0.985
 _TRUE_LINE: dict[str, Any] = {"color": TRUTH, "lw": 0.9, "ls": (0, (4, 2))}
@@ -44,6 +44,9 @@ class _Layout:
     close: tuple[float, float]
     whole: tuple[float, float]
     torques: bool  # whether joint torques are shown for each hit
+    top: float = 0.977  # foot of the title
+    row: float = 0.022  # of a legend
+    beneath: float = 0.0  # height for the run of the imperfect arm [inch]
 
 
 _ARM = _Layout(
@@ -57,6 +60,7 @@ _ARM = _Layout(
     close=(0.62, 0.25),
     whole=(0.19, 0.05),
     torques=True,
+    beneath=2.9,
 )
 _HUMANOID = _Layout(
     size=(15.0, 12.0),
@@ -72,9 +76,31 @@ _HUMANOID = _Layout(
 )
 
 
+def _with_room(layout: _Layout) -> _Layout:
+    """Taller, with everything as far from the top as before and `beneath` at the foot."""
+    width, height = layout.size
+    taller = height + layout.beneath
+
+    def moved(place: float) -> float:
+        return 1.0 - (1.0 - place) * height / taller
+
+    return replace(
+        layout,
+        size=(width, taller),
+        top=moved(layout.top),
+        robots=(moved(layout.robots[0]), moved(layout.robots[1])),
+        legend=moved(layout.legend),
+        row=layout.row * height / taller,
+        close=(moved(layout.close[0]), moved(layout.close[1])),
+        whole=(moved(layout.whole[0]), moved(layout.whole[1])),
+    )
+
+
 def save_figure(result: DemoResult, path: str | os.PathLike[str]) -> Path:
     """See `contactsense.demo.save_picture`."""
     layout = _ARM if result.standing is None else _HUMANOID
+    if result.imperfect is not None:
+        layout = _with_room(layout)
     target = picture_file("path", path)
     return save_picture(
         "path", target, layout.size, lambda figure: _draw(figure, result, layout), constrained=False
@@ -82,9 +108,11 @@ def save_figure(result: DemoResult, path: str | os.PathLike[str]) -> Path:
 
 
 def _draw(figure: Figure, result: DemoResult, layout: _Layout) -> None:
-    figure.text(_LEFT, 0.977, layout.title, fontsize=17, weight="bold")
+    figure.text(_LEFT, layout.top, layout.title, fontsize=17, weight="bold")
     subtitle = _moving(result) if result.standing is None else _standing(result, result.standing)
-    figure.text(_LEFT, 0.968, subtitle, fontsize=10.5, color=TEXT, va="top", linespacing=1.4)
+    figure.text(
+        _LEFT, layout.top - 0.4 * layout.row, subtitle, fontsize=10.5, color=TEXT, va="top", linespacing=1.4
+    )
     # An arm is hit on the same links again and again: the first hit of each is shown close up.
     hits = list({hit.link: hit for hit in reversed(result.hits)}.values())[::-1]
     heights = (3.3, 2.6, 0.5) if layout.torques else (2.6, 0.5)
@@ -116,24 +144,33 @@ def _draw(figure: Figure, result: DemoResult, layout: _Layout) -> None:
             Line2D([], [], color=colour, lw=2.6, label=f"joint {number}")
             for number, colour in enumerate(JOINTS, 1)
         ]
-        _legend(figure, [*joints, *_FORCE_LEGEND], layout.legend - 0.022)
+        _legend(figure, [*joints, *_FORCE_LEGEND], layout.legend - layout.row)
     else:
         _legend(figure, [*ROBOT_LEGEND, *_FORCE_LEGEND], layout.legend)
     heights = (2.6, 0.5) if result.standing is None else (2.2, 2.0, 0.5)
     whole = grid(len(heights), 1, layout.whole, height_ratios=heights)
-    _whole_run([figure.add_subplot(whole[row, 0]) for row in range(len(heights))], result, layout)
+    axes = [figure.add_subplot(whole[row, 0]) for row in range(len(heights))]
+    if result.standing is not None:
+        _ground(axes[0], result.signals, result.standing)
+    # A force panel of one run has the scale of the other's.
+    top = 1.6 * max(hit.force for hit in result.hits)
+    _whole_run(axes, result, layout.whole_title if result.imperfect is None else _title(result), top)
+    if result.imperfect is not None:
+        room = layout.beneath / layout.size[1]
+        beneath = grid(2, 1, (0.82 * room, 0.24 * room), height_ratios=heights)
+        axes = [figure.add_subplot(beneath[row, 0]) for row in range(2)]
+        _whole_run(axes, result.imperfect, _imperfect_title(result.imperfect), top)
 
 
 def _moving(result: DemoResult) -> str:
     noise = result.noise
-    kind = (
-        "no torque noise" if noise.none else f"torque noise {noise.percent:g} % + {noise.newton_metres:g} Nm"
-    )
+    kind = "ideal torques" if noise.none else f"torque noise {noise.percent:g} % + {noise.newton_metres:g} Nm"
     return (
         f"{result.robot_name} in simulation, joints at up to {result.planned_speed:.1f} rad/s, {kind}, seed "
         f"{result.seed}. Only joint positions, velocities and torques are used.\n"
         f"{result.detected} of {len(result.hits)} contacts detected, {result.links_right} links correct, "
         f"{len(result.located)} points located."
+        + ("" if result.imperfect is None else " The lowest panel: the same with the errors of a real arm.")
     )
 
 
@@ -214,13 +251,32 @@ def _finish(axes: list[Axes], hit: HitResult, layout: _Layout, *, leftmost: bool
             axes[0].set_ylabel("external torque [Nm]")
 
 
-def _whole_run(axes: list[Axes], result: DemoResult, layout: _Layout) -> None:
-    signals, (*ground, force, bands) = result.signals, axes
-    if result.standing is not None:
-        _ground(ground[0], signals, result.standing)
+def _title(result: DemoResult) -> str:
+    kind = "ideal torques" if result.noise.none else "noisy torques"
+    return f"The whole run, as above ({kind}): {_counts(result)}"
+
+
+def _imperfect_title(result: ImperfectResult) -> str:
+    return (
+        "The same contacts on an arm with the errors of a real one, calibrated with "
+        f"{result.calibration_seconds:.0f} s of other motion:\n{_counts(result)}"
+    )
+
+
+def _counts(run: Scored) -> str:
+    alarms = f"{run.false_alarms} false alarm{'' if run.false_alarms == 1 else 's'}"
+    return (
+        f"{run.detected} of {len(run.hits)} detected, {run.links_right} links correct, "
+        f"{len(run.located)} located, {alarms}"
+    )
+
+
+def _whole_run(axes: list[Axes], run: Scored, title: str, top: float) -> None:
+    """Forces and detection from start to end, in the last two of `axes`."""
+    signals, (force, bands) = run.signals, axes[-2:]
     force.fill_between(signals.time, signals.true_force, color=TRUTH, alpha=0.3, lw=0)
     force.plot(signals.time, signals.force, color=ESTIMATE, lw=1.6)
-    for hit in result.hits:
+    for hit in run.hits:
         force.annotate(
             f"{hit.number}: {_short(hit.link)}\n{_estimate(hit)}",
             (hit.start + 0.5 * hit.duration, hit.force),
@@ -230,13 +286,13 @@ def _whole_run(axes: list[Axes], result: DemoResult, layout: _Layout) -> None:
             fontsize=8.5,
             color=TEXT,
         )
-    force.set_ylim(0.0, 1.6 * max(hit.force for hit in result.hits))
+    force.set_ylim(0.0, top)
     force.set_ylabel("force [N]")
     _bands(bands, signals.time, signals)
     for each in axes:
         each.set_xlim(signals.time[0], signals.time[-1])
         each.tick_params(labelbottom=each is bands)
-    axes[0].set_title(layout.whole_title, weight="bold")
+    axes[0].set_title(title, weight="bold")
     bands.set_xlabel("time [s]")
 
 

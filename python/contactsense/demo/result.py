@@ -86,21 +86,12 @@ class Timing:
 
 
 @dataclass(frozen=True)
-class DemoResult:
-    """A run."""
+class Scored:
+    """Hits of a run, and what the monitor said of them."""
 
-    robot_name: str
-    robot: Robot
-    seed: int
-    noise: TorqueNoise
-    sensor_noise: WrenchNoise
-    settings: Settings
-    planned_speed: float  # fastest joint of the planned motion; zero where it stands [rad/s]
     hits: tuple[HitResult, ...]
     false_alarms: int
     signals: Signals
-    timing: Timing
-    standing: Standing | None  # of a humanoid
 
     @property
     def detected(self) -> int:
@@ -119,6 +110,30 @@ class DemoResult:
 
 
 @dataclass(frozen=True)
+class ImperfectResult(Scored):
+    """The same motion and contacts on an arm with the errors of a real one, calibrated."""
+
+    calibration_seconds: float  # of motion without contact [s]
+    torque_threshold: FloatArray  # (nv,) that follow from the calibration [Nm]
+
+
+@dataclass(frozen=True)
+class DemoResult(Scored):
+    """A run."""
+
+    robot_name: str
+    robot: Robot
+    seed: int
+    noise: TorqueNoise
+    sensor_noise: WrenchNoise
+    settings: Settings
+    planned_speed: float  # fastest joint of the planned motion; zero where it stands [rad/s]
+    timing: Timing
+    standing: Standing | None  # of a humanoid
+    imperfect: ImperfectResult | None = None  # of an arm
+
+
+@dataclass(frozen=True)
 class Progress:
     """Where a run is."""
 
@@ -128,6 +143,7 @@ class Progress:
     planned: int
     settings: Settings
     sensed: str  # what the monitor says now, a link's name or empty
+    imperfect: bool = False  # whether the imperfect arm has its turn
 
 
 def as_data(result: DemoResult) -> dict[str, Any]:
@@ -139,6 +155,27 @@ def as_data(result: DemoResult) -> dict[str, Any]:
         "planned_peak_speed": result.planned_speed,
         "observer_gain": result.settings.observer_gain,
         "torque_threshold": result.settings.torque_threshold.tolist(),
+        **_scored_data(result),
+        "monitor": {
+            "calls": result.timing.calls,
+            "mean_us": 1e6 * result.timing.mean,
+            "median_us": 1e6 * result.timing.median,
+            "max_us": 1e6 * result.timing.max,
+        },
+    }
+    if result.standing is not None:
+        data["standing"] = _standing_data(result, result.standing)
+    if result.imperfect is not None:
+        data["imperfect"] = {
+            "calibration_s": result.imperfect.calibration_seconds,
+            "torque_threshold": result.imperfect.torque_threshold.tolist(),
+            **_scored_data(result.imperfect),
+        }
+    return data
+
+
+def _scored_data(result: Scored) -> dict[str, Any]:
+    return {
         "hits": [_hit_data(hit) for hit in result.hits],
         "summary": {
             "hits": len(result.hits),
@@ -152,16 +189,7 @@ def as_data(result: DemoResult) -> dict[str, Any]:
             "median_delay_ms": _median([hit.delay for hit in result.hits], 1e3),
             "false_alarms": result.false_alarms,
         },
-        "monitor": {
-            "calls": result.timing.calls,
-            "mean_us": 1e6 * result.timing.mean,
-            "median_us": 1e6 * result.timing.median,
-            "max_us": 1e6 * result.timing.max,
-        },
     }
-    if result.standing is not None:
-        data["standing"] = _standing_data(result, result.standing)
-    return data
 
 
 def _standing_data(result: DemoResult, standing: Standing) -> dict[str, Any]:

@@ -51,6 +51,9 @@ class HitScorer:
         if not report.collision:
             return
         if self._delay is None:
+            # A report that began before the hit, and goes on, does not detect it.
+            if not report.onset:
+                return
             self._delay = time - self._push.start
         named = {contact.link for contact in report.contacts}
         self._elsewhere.update(named - {self._push.link})

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
+import numpy as np
 from rich.box import SIMPLE_HEAD
 from rich.console import Console, Group, RenderableType
 from rich.live import Live
@@ -13,7 +14,7 @@ from rich.table import Table
 from rich.text import Text
 
 from .arm import FLOOR
-from .result import DemoResult, HitResult, Progress, Standing
+from .result import DemoResult, HitResult, ImperfectResult, Progress, Standing
 from .settings import DEVIATIONS, Settings
 
 # Header, and whether the column is aligned to the right.
@@ -27,6 +28,10 @@ _COLUMNS = (
     ("± std\n[mm]", True),
     ("force\noff [%]", True),
     ("delay\n[ms]", True),
+)
+_IMPERFECT_TITLE = (
+    "The same contacts on an arm with the errors of a real one (torque noise and bias, friction, hysteresis, "
+    "wrong masses, encoder steps, filtered velocities), calibrated with {:.0f} s of other motion"
 )
 _NOTES = (
     "The estimate is that of the tick with the largest torques. Off by: the distance to the true point at "
@@ -44,6 +49,8 @@ def live_table(console: Console) -> Iterator[Callable[[Progress], None]]:
 
         def show(progress: Progress) -> None:
             state = Text("free")
+            if progress.imperfect:
+                state = Text("the same contacts on an imperfect arm, which is calibrated first")
             if progress.sensed:
                 state = Text(f"contact on {progress.sensed}", style="bold yellow")
             status = Text(f"{progress.time:4.1f} of {progress.end:.0f} s   ").append_text(state)
@@ -52,9 +59,17 @@ def live_table(console: Console) -> Iterator[Callable[[Progress], None]]:
         yield show
 
 
-def hit_table(hits: Sequence[HitResult], rows: int = 0) -> Table:
+def hit_table(hits: Sequence[HitResult], rows: int = 0, title: str | None = None) -> Table:
     """One row a contact, empty rows for those to come."""
-    table = Table(box=SIMPLE_HEAD, header_style="bold", pad_edge=False, padding=(0, 1, 0, 0))
+    table = Table(
+        title=title,
+        title_justify="left",
+        title_style="bold",
+        box=SIMPLE_HEAD,
+        header_style="bold",
+        pad_edge=False,
+        padding=(0, 1, 0, 0),
+    )
     for header, right in _COLUMNS:
         table.add_column(escape(header), justify="right" if right else "left", no_wrap=True)
     for hit in hits:
@@ -122,19 +137,53 @@ def _headline(result: DemoResult) -> str:
 
 def print_result(console: Console, result: DemoResult, picture: str) -> None:
     """The whole answer, for people."""
+    other = result.imperfect
     console.print(_headline(result), highlight=False)
     console.print(settings_text(result), highlight=False)
-    console.print(hit_table(result.hits))
+    console.print(hit_table(result.hits, title=None if other is None else _first_title(result)))
+    if other is not None:
+        console.print(hit_table(other.hits, title=_IMPERFECT_TITLE.format(other.calibration_seconds)))
     console.print(_NOTES, style="dim", highlight=False)
+    if other is not None:
+        console.print(_compared(result, other))
     console.print(summary_text(result), highlight=False, style="bold")
     console.print(f"Picture: {picture}", highlight=False, soft_wrap=True)
+
+
+def _first_title(result: DemoResult) -> str:
+    return "Ideal torques" if result.noise.none else "Torques with noise and no other error"
+
+
+def _compared(result: DemoResult, other: ImperfectResult) -> Table:
+    """Both runs side by side."""
+    ideal = "ideal torques" if result.noise.none else "noisy torques"
+    table = Table(box=SIMPLE_HEAD, header_style="bold", pad_edge=False, padding=(0, 1, 0, 0))
+    table.add_column("")
+    for header in (ideal, "imperfect arm,\ncalibrated"):
+        table.add_column(header, justify="right")
+    runs = (result, other)
+    count = len(result.hits)
+    table.add_row("detected", *(f"{run.detected} of {count}" for run in runs))
+    table.add_row("link correct", *(f"{run.links_right} of {count}" for run in runs))
+    table.add_row("located", *(f"{len(run.located)} of {count}" for run in runs))
+    table.add_row("median point error \\[mm]", *(_middle(run.located, "point_error", 1e3) for run in runs))
+    table.add_row("median force error \\[%]", *(_middle(run.located, "force_error", 100.0) for run in runs))
+    table.add_row("median delay \\[ms]", *(_middle(run.hits, "delay", 1e3) for run in runs))
+    table.add_row("false alarms", *(str(run.false_alarms) for run in runs))
+    return table
+
+
+def _middle(hits: Sequence[HitResult], name: str, factor: float) -> str:
+    known = [value for hit in hits if (value := getattr(hit, name)) is not None]
+    return _number(float(np.median(known)) if known else None, factor)
 
 
 def summary_text(result: DemoResult) -> str:
     """One line or two."""
     located = result.located
+    of = "" if result.imperfect is None else f"{_first_title(result)}: "
     text = (
-        f"{result.detected} of {len(result.hits)} contacts detected, {result.links_right} links correct, "
+        f"{of}{result.detected} of {len(result.hits)} contacts detected, {result.links_right} links correct, "
         f"{len(located)} points located"
     )
     errors = sorted(1e3 * hit.point_error for hit in located if hit.point_error is not None)
