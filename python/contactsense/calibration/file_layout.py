@@ -50,9 +50,7 @@ JOINT_FIELDS = (
     Field("viscous_std", "Nm s/rad (N s/m)", ("viscous_std",), "not negative"),
     Field("hysteresis", "share of a change of torque that gears keep back", ("hysteresis",), "not negative"),
     Field("hysteresis_std", "share", ("hysteresis_std",), "not negative"),
-    Field(
-        "hysteresis_width", "Nm (N), where it levels off", ("hysteresis_width",), "not negative"
-    ),
+    Field("hysteresis_width", "Nm (N), where it levels off", ("hysteresis_width",), "not negative"),
     Field("armature", "kg m^2 (kg), rotor inertia behind the gear", ("armature",), "not negative"),
     Field("armature_std", "kg m^2 (kg)", ("armature_std",), "not negative"),
     Field("residual", "Nm (N), root mean square on held-out blocks", ("residual",), "not negative"),

@@ -62,6 +62,16 @@ fn tick(c: &mut Criterion) {
             b.iter(|| monitor.update(black_box(&sample)).expect("valid input").collision)
         });
         assert!(!monitor.report().collision);
+
+        let calibration = Some(Calibration::of_description(monitor.robot()));
+        let mut options = MonitorOptions { calibration, ..options };
+        options.isolation.torque_threshold = None;
+        let mut tested = ContactMonitor::new(monitor.robot().clone(), &options).expect("valid settings");
+        group.bench_function(format!("{name}, all joints tested at once"), |b| {
+            let sample = Sample::new(&q, &rest, &tau);
+            b.iter(|| tested.update(black_box(&sample)).expect("valid input").collision)
+        });
+        assert!(!tested.report().collision && tested.report().significance.is_some());
     }
     group.finish();
 }

@@ -182,6 +182,18 @@ fn a_tick_allocates_nothing() {
         let contact = allocations(|| ()) + (0..40).map(|_| tick(&mut monitor, torques.last())).sum::<usize>();
         let free = (0..40).map(|_| tick(&mut monitor, None)).sum::<usize>();
         assert_eq!((contact, free), (0, 0), "monitor of {}", robot.name());
+
+        let mut options = MonitorOptions { calibration: Some(calibration), ..MonitorOptions::new(1e-3) };
+        options.isolation.torque_threshold = None;
+        let mut tested = ContactMonitor::new(robot.clone(), &options).expect("valid options");
+        for _ in 0..30 {
+            tick(&mut tested, None);
+        }
+        let contact = (0..100).map(|_| tick(&mut tested, torques.last())).sum::<usize>();
+        assert!(tested.report().collision, "the test of all joints saw the contact");
+        let free = (0..1000).map(|_| tick(&mut tested, None)).sum::<usize>();
+        assert_eq!((contact, free), (0, 0), "monitor of {}, all joints tested at once", robot.name());
+        assert!(tested.report().significance.is_some());
         assert!(seen > 30, "the monitor saw the contact: {seen}");
 
         let sensors = sensors_of(&robot);

@@ -128,7 +128,10 @@ impl PyNoiseModel {
     /// Returns:
     ///     Plain Python values: numbers, and lists in place of arrays.
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        plain_dict(slf.as_any(), &["torque", "velocity", "relative", "model", "model_time", "friction", "bias"])
+        plain_dict(
+            slf.as_any(),
+            &["torque", "velocity", "relative", "model", "model_time", "friction", "bias"],
+        )
     }
 
     /// Covariance of the external torque of the untouched robot behind an observer.

@@ -3,8 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::fingerprint::fingerprint;
-use super::Tail;
 use super::torque_model::{Friction, TorqueModel, REVERSALS};
+use super::Tail;
 use crate::error::{Error, Result};
 use crate::robot::check::principal_moments;
 use crate::robot::inertial_parameters::{moment_matrix, of_inertia, to_inertia, Parameters};

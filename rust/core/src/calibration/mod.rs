@@ -28,11 +28,11 @@ mod torque_model;
 mod uncertainty;
 mod unknowns;
 
+pub use crate::detection::Tail;
 pub use calibrate::calibrate;
 pub use calibration::{BodyInertia, Calibration, CalibrationOptions, Payload};
 pub use excitation::{exciting_motion, Excitation, ExcitationPlanner, Motion};
 pub use log::Log;
-pub use crate::detection::Tail;
 pub(crate) use torque_model::TorqueModel;
 pub use torque_model::{Friction, Reversal};
 

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use super::log::Log;
 use super::noise::Judged;
 use crate::detection::{
-    gaussian_level, ContactTest, FrictionErrors, Level, Tail, FOLLOW_TIME, GAINS, LARGEST_STEP, PEAK_TIME, SLOW,
+    gaussian_level, ContactTest, FrictionErrors, Level, Tail, FOLLOW_TIME, GAINS, LARGEST_STEP, PEAK_TIME,
+    SLOW,
 };
 use crate::error::Result;
 use crate::observer::{MomentumObserver, ObserverBank, Step};
@@ -88,9 +89,7 @@ pub(super) fn rest_errors(
             };
             let slow = shown(&|stretch| &stretch.slow, gains[0]);
             match slow.zip(shown(&|stretch| &stretch.fast, event_gain)) {
-                Some((slow, fast)) => {
-                    (HEAVY_TAIL * slow.min(fast).sqrt()).max(KNOWN_SHARE * coulomb[j])
-                }
+                Some((slow, fast)) => (HEAVY_TAIL * slow.min(fast).sqrt()).max(KNOWN_SHARE * coulomb[j]),
                 None => UNKNOWN_SHARE * coulomb[j],
             }
         })
@@ -176,7 +175,9 @@ impl Judged {
             let torque = &bank.torques()[0];
             let share = (dt / FOLLOW_TIME).min(1.0);
             bias.iter_mut().zip(torque).for_each(|(bias, torque)| *bias += share * (torque - *bias));
-            if let Some(stretch) = stretches.last_mut().filter(|_| since > SETTLED && kept >= SPACING - 0.5 * dt) {
+            if let Some(stretch) =
+                stretches.last_mut().filter(|_| since > SETTLED && kept >= SPACING - 0.5 * dt)
+            {
                 kept = 0.0;
                 stretch.slow.push(torque.clone());
                 stretch.followed.push(torque.iter().zip(&bias).map(|(torque, bias)| torque - bias).collect());
@@ -201,7 +202,8 @@ fn white_variance(
     let (mut sum, mut poses) = (vec![0.0; robot.nv()], 0.0);
     for part in parts {
         for row in part.rows.clone().step_by((part.rows.len() / POSES).max(1)) {
-            let covariance = white.covariance(part.robot.as_ref().unwrap_or(robot), log.q_of(robot, row), gain, step)?;
+            let covariance =
+                white.covariance(part.robot.as_ref().unwrap_or(robot), log.q_of(robot, row), gain, step)?;
             sum.iter_mut().enumerate().for_each(|(j, sum)| *sum += covariance[(j, j)]);
             poses += 1.0;
         }

@@ -55,16 +55,22 @@ impl Signal {
     }
 
     #[inline]
-    fn set_covariance(&mut self, velocity: &VelocityCovariance, slow: &SlowErrors, friction: &FrictionErrors) {
+    /// A tick's work on the covariance; true where it is complete.
+    fn whiten(
+        &mut self,
+        velocity: &VelocityCovariance,
+        slow: &SlowErrors,
+        friction: &FrictionErrors,
+    ) -> bool {
         let Signal { whitening, .. } = self;
         let (torque, root, model, of_friction) = (&self.torque, &self.velocity, &self.model, &self.friction);
         let shares = friction.shares();
-        whitening.set(|i, row| {
+        whitening.advance(|i, row| {
             for ((value, product), other) in row.iter_mut().zip(velocity.row(i)).zip(root) {
                 *value = product * root[i] * other;
             }
             row[i] += torque[i] + slow.variance(i, model[i]) + of_friction[i] * shares[i];
-        });
+        })
     }
 }
 
@@ -111,9 +117,8 @@ impl ContactTest {
     ) -> Self {
         let nv = robot.nv();
         let gains: Vec<f64> = levels.iter().map(|level| level.gain).collect();
-        let signal = |level: &Level| {
-            Signal::new(variances, &vec![level.gain; nv], dt, level.level, level.gaussian)
-        };
+        let signal =
+            |level: &Level| Signal::new(variances, &vec![level.gain; nv], dt, level.level, level.gaussian);
         ContactTest {
             bank: Some(ObserverBank::new(nv, dt, &gains)),
             signals: levels.iter().map(signal).collect(),
@@ -153,12 +158,14 @@ impl ContactTest {
         }
         self.velocity.advance(&self.robot, kinematics);
         self.friction.advance(v, step.length(self.dt));
-        let all = 0..self.signals.len();
-        let due = if self.started { self.next..self.next + 1 } else { all };
-        for signal in &mut self.signals[due] {
-            signal.set_covariance(&self.velocity, &self.slow, &self.friction);
+        let Self { signals, velocity, slow, friction, .. } = self;
+        if self.started {
+            if signals[self.next].whiten(velocity, slow, friction) {
+                self.next = (self.next + 1) % signals.len();
+            }
+        } else {
+            signals.iter_mut().for_each(|signal| _ = signal.whiten(velocity, slow, friction));
         }
-        self.next = (self.next + 1) % self.signals.len();
         self.started = true;
     }
 
@@ -183,7 +190,8 @@ impl ContactTest {
             // Errors that are not Gaussian widen the thresholds of single joints as much as that of the statistic.
             let widened = (signal.level / signal.gaussian_level).sqrt();
             let deviations = signal.whitening.deviations();
-            let shares = without_bias.iter().zip(deviations).map(|(torque, deviation)| (torque / deviation).abs());
+            let shares =
+                without_bias.iter().zip(deviations).map(|(torque, deviation)| (torque / deviation).abs());
             let largest = shares.clone().fold(0.0, f64::max);
             let threshold = f64::min(JOINT_LEVEL * widened, largest * ALMOST);
             for (joint, share) in joints.iter_mut().zip(shares) {
@@ -256,7 +264,10 @@ impl ContactTest {
         if let Some(bank) = &mut self.bank {
             bank.reset();
         }
-        self.signals.iter_mut().for_each(|signal| signal.statistic = 0.0);
+        self.signals.iter_mut().for_each(|signal| {
+            signal.statistic = 0.0;
+            signal.whitening.reset();
+        });
         self.velocity.reset();
         self.slow.reset();
         self.friction.reset();

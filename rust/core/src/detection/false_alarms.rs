@@ -113,9 +113,14 @@ mod tests {
     #[test]
     fn an_exponential_tail_is_found() {
         // Quantiles of an exponential distribution of scale 3.
-        let mut peaks: Vec<f64> = (0..1000).map(|k| -3.0 * (1.0 - (f64::from(k) + 0.5) / 1000.0).ln()).collect();
+        let mut peaks: Vec<f64> =
+            (0..1000).map(|k| -3.0 * (1.0 - (f64::from(k) + 0.5) / 1000.0).ln()).collect();
         let tail = Tail::of_peaks(8.0, &mut peaks).expect("enough peaks");
-        assert!((tail.scale / (1.0 + 199.0_f64.sqrt().recip()) - 3.0).abs() < 0.1 && (tail.level - 3.0 * 5.0_f64.ln()).abs() < 0.1, "{tail:?}");
+        assert!(
+            (tail.scale / (1.0 + 199.0_f64.sqrt().recip()) - 3.0).abs() < 0.1
+                && (tail.level - 3.0 * 5.0_f64.ln()).abs() < 0.1,
+            "{tail:?}"
+        );
         assert_eq!(Tail::of_peaks(8.0, &mut [1.0; 20]), None);
     }
 }

@@ -111,7 +111,9 @@ impl ReleaseDetector {
             return false;
         }
         let settled = self.rule.settle_time.is_some_and(|settle| self.still_time >= settle);
-        settled || (self.still_time >= STILL_TIME && (self.is_remainder(&self.mean, bias) || self.is_wrong_bias(bias)))
+        settled
+            || (self.still_time >= STILL_TIME
+                && (self.is_remainder(&self.mean, bias) || self.is_wrong_bias(bias)))
     }
 
     /// Whether the torque has been as low as a remainder for long enough, after a greater one.

@@ -50,7 +50,11 @@ impl SlowErrors {
             lost: 0.0,
             unknown: 1.0,
             kept: vec![0.0; noise.model.len()],
-            largest_kept: noise.is_force.iter().map(|is_force| largest_kept[usize::from(*is_force)]).collect(),
+            largest_kept: noise
+                .is_force
+                .iter()
+                .map(|is_force| largest_kept[usize::from(*is_force)])
+                .collect(),
             time_constant,
             noise,
         }
@@ -91,7 +95,9 @@ impl SlowErrors {
         let kept = if self.lost > 0.0 { (-self.lost / self.noise.model_time[j]).exp() } else { 1.0 };
         // Of an error m that its low-pass b follows: var(m) = 1, var(b) = cov(m, b) = followed, and the covariance
         // falls off with the time since.
-        share * self.noise.model[j] * (1.0 + followed * (1.0 - 2.0 * kept)) + self.unknown * self.noise.bias[j] + self.kept[j]
+        share * self.noise.model[j] * (1.0 + followed * (1.0 - 2.0 * kept))
+            + self.unknown * self.noise.bias[j]
+            + self.kept[j]
     }
 
     /// Takes a torque that a contact left behind for the bias.

@@ -1,34 +1,46 @@
 //! A torque over its covariance: `r' S^-1 r` by Cholesky's factors.
 
-/// The lower Cholesky factor of a covariance.
+/// Products of numbers in a tick, about: all of an arm's factor, a tenth of a humanoid's.
+const WORK: usize = 400;
+
+/// The lower Cholesky factor of a covariance, worked out over one tick or several.
 #[derive(Debug, Clone)]
 pub(crate) struct Whitening {
     size: usize,
-    /// Rows of the factor; the reciprocal of each diagonal entry in its place.
+    /// Rows of the factor, the reciprocal of each diagonal entry in its place: complete, and in the making.
     factor: Vec<f64>,
+    growing: Vec<f64>,
+    next: usize,
+    started: bool,
     /// Of each torque (Nm).
     deviations: Vec<f64>,
     whitened: Vec<f64>,
 }
 
 impl Whitening {
-    /// Space for so many torques; they count for nothing until a covariance is set.
+    /// Space for so many torques; they count for nothing until a covariance is complete.
     pub fn new(size: usize) -> Self {
         Whitening {
             size,
             factor: vec![0.0; size * size],
+            growing: vec![0.0; size * size],
+            next: 0,
+            started: false,
             deviations: vec![f64::INFINITY; size],
             whitened: vec![0.0; size],
         }
     }
 
-    /// Sets the covariance by its entries up to the diagonal: `covariance(i)` writes row `i`. It must have a positive
-    /// diagonal; a pivot that rounding makes negative is taken for a small share of its diagonal entry.
+    /// A tick's work on the factor of a covariance of which `covariance(i, row)` writes row `i` up to the diagonal; the first
+    /// time, all of it. Its diagonal must be positive; a pivot that rounding makes negative is taken for a small share of
+    /// its diagonal entry. True where the factor is complete.
     #[inline]
-    pub fn set(&mut self, mut covariance: impl FnMut(usize, &mut [f64])) {
+    pub fn advance(&mut self, mut covariance: impl FnMut(usize, &mut [f64])) -> bool {
         let n = self.size;
-        for i in 0..n {
-            let (above, rest) = self.factor.split_at_mut(i * n);
+        let mut work = 0;
+        while self.next < n && (work < WORK || !self.started) {
+            let i = self.next;
+            let (above, rest) = self.growing.split_at_mut(i * n);
             let row = &mut rest[..=i];
             covariance(i, row);
             let variance = row[i];
@@ -41,7 +53,20 @@ impl Whitening {
             let (before, last) = row.split_at_mut(i);
             let pivot = variance - before.iter().map(|a| a * a).sum::<f64>();
             last[0] = 1.0 / pivot.max(SMALLEST_PIVOT * variance).sqrt();
+            work += i * i / 2 + i;
+            self.next += 1;
         }
+        if self.next < n {
+            return false;
+        }
+        std::mem::swap(&mut self.factor, &mut self.growing);
+        (self.next, self.started) = (0, true);
+        true
+    }
+
+    /// Starts anew with the next covariance.
+    pub fn reset(&mut self) {
+        (self.next, self.started) = (0, false);
     }
 
     /// `r' S^-1 r`.
@@ -76,12 +101,16 @@ mod tests {
 
     #[test]
     fn it_is_the_quadratic_form() {
-        let root = DMatrix::from_fn(5, 5, |i, j| ((3 * i + 7 * j) as f64).sin() + if i == j { 2.0 } else { 0.0 });
+        let root =
+            DMatrix::from_fn(5, 5, |i, j| ((3 * i + 7 * j) as f64).sin() + if i == j { 2.0 } else { 0.0 });
         let covariance = &root * root.transpose();
         let torque = DVector::from_fn(5, |i, _| 1.0 + i as f64);
         let mut whitening = Whitening::new(5);
         assert_eq!(whitening.squared_norm(torque.as_slice()), 0.0);
-        whitening.set(|i, row| row.iter_mut().enumerate().for_each(|(j, value)| *value = covariance[(i, j)]));
+        let row = |i: usize, row: &mut [f64]| {
+            row.iter_mut().enumerate().for_each(|(j, value)| *value = covariance[(i, j)]);
+        };
+        assert!(whitening.advance(row));
         let expected = torque.dot(&covariance.clone().cholesky().expect("positive").solve(&torque));
         assert!((whitening.squared_norm(torque.as_slice()) / expected - 1.0).abs() < 1e-12);
         assert!((whitening.deviations()[2] - covariance[(2, 2)].sqrt()).abs() < 1e-15);

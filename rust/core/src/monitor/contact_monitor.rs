@@ -94,7 +94,9 @@ impl ContactMonitor {
             options.dt,
         )?;
         let greatest_bias = options.greatest_bias(&threshold)?;
-        let release = ReleaseDetector::new(options.release_rule(&robot, &options.release_threshold(&robot, &test, &threshold)?)?);
+        let release = ReleaseDetector::new(
+            options.release_rule(&robot, &options.release_threshold(&robot, &test, &threshold)?)?,
+        );
         let tracker = |constant| BiasTracker::new(constant, greatest_bias);
         let isolator = ContactIsolator::new(robot.clone(), &options.isolation)?;
         let sensors = options.isolation.sensors.len();

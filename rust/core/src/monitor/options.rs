@@ -92,7 +92,8 @@ impl MonitorOptions {
         gain: &[f64],
         one_torque: bool,
     ) -> Result<Option<ContactTest>> {
-        let Some(calibration) = self.calibration.as_ref().filter(|_| self.isolation.torque_threshold.is_none())
+        let Some(calibration) =
+            self.calibration.as_ref().filter(|_| self.isolation.torque_threshold.is_none())
         else {
             return Ok(None);
         };

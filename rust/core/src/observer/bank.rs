@@ -35,7 +35,10 @@ impl ObserverBank {
                 Step::Nominal => *nominal,
                 _ => (-gain * step.length(self.dt)).exp(),
             };
-            torque.iter_mut().zip(unexplained).for_each(|(torque, new)| *torque = new + decay * (*torque - new));
+            torque
+                .iter_mut()
+                .zip(unexplained)
+                .for_each(|(torque, new)| *torque = new + decay * (*torque - new));
         }
     }
 

@@ -8,11 +8,11 @@ mod link_target;
 mod noise_model;
 mod target;
 
+pub(crate) use error_variances::{ErrorVariances, SlowNoise};
 pub(crate) use fit::{BestForce, NormalFit};
 pub(crate) use force_model::directions;
 pub use force_model::ForceModel;
 pub(crate) use frames::{Frame, Frames};
-pub(crate) use error_variances::{ErrorVariances, SlowNoise};
 pub use noise_model::NoiseModel;
 pub(crate) use noise_model::{largest, TorqueNoise, LEVEL};
 pub(crate) use target::Target;
