@@ -38,6 +38,7 @@ def full(robot: cs.Robot = IIWA, **changes: object) -> cs.Calibration:
         "moment": 1e-3,
     }
     content["sensor_offsets"] = [["wrist: left", [1.0, 2.0, -3.0, 0.1, 0.2, 1e-20]]]
+    content["tails"] = [{"gain": 8.0, "level": 12.5, "scale": 2.25}]
     content["contacts"] = [[1.0, 2.5], [1700000000.125, 1700000001.0]]
     content["notes"] = ["joint 7: its mass\ncannot be told # apart", "Größe \U0001f600 'and' \"so\""]
     content["noise"]["torque"] = random.uniform(0, 1, nv).tolist()
@@ -142,9 +143,9 @@ def test_the_order_of_joints_and_links_in_the_file_does_not_matter(tmp_path: Pat
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("format: 1", "format: 2", "format: .*reads format 1, not 2"),
-        ("format: 1\n", "", "format .* is missing"),
-        ("format: 1\n", "format: true\n", "not True"),
+        ("format: 2", "format: 1", "format: .*reads format 2, not 1"),
+        ("format: 2\n", "", "format .* is missing"),
+        ("format: 2\n", "format: true\n", "not True"),
         ("torque_is_external: false", "torque_is_external: maybe", "torque_is_external: .*true or false"),
         ("velocity_delay: 0.004", "velocity_delay: -0.1", "velocity_delay: must be .*not negative.*-0.1"),
         ("velocity_delay: 0.004", "velocity_delay: .nan", "velocity_delay: must be a finite"),

@@ -12,6 +12,7 @@ CLASSES = [getattr(cs, name) for name in cs.__all__ if inspect.isclass(getattr(c
 IDS = [cls.__name__ for cls in CLASSES]
 # Arrays without a unit: directions and numbers of rows.
 UNITLESS = {
+    "hysteresis_std",
     "normal",
     "normals",
     "triangles",

@@ -22,7 +22,8 @@ SIGNATURES = {
     "ForceTorqueSensor": "name, link, *, pose=None, convention='load'",
     "LoadCompensator": "robot, sensors",
     "LoadCompensator.update": "q, v, a, wrenches",
-    "NoiseModel": "*, torque=0.05, velocity=0.0, relative=0.03, model=0.1, model_time=1.0",
+    "NoiseModel": "*, torque=0.05, velocity=0.0, relative=0.03, model=0.1, model_time=1.0, "
+    "friction=0.0, bias=0.0",
     "calibrate": "robot, log, *, false_alarms_per_hour=1.0, payload_link=None",
     "Calibration.of_description": "robot",
     "Calibration.load": "path",
@@ -182,5 +183,5 @@ def test_the_defaults_are_those_in_use():
             assert np.array_equal(getattr(plain, attribute), getattr(given, attribute)), (name, attribute)
     assert plain.torque_threshold[0] == 1e-3
     assert cs.NoiseModel() == cs.NoiseModel(
-        torque=0.05, velocity=0.0, relative=0.03, model=0.1, model_time=1.0
+        torque=0.05, velocity=0.0, relative=0.03, model=0.1, model_time=1.0, friction=0.0, bias=0.0
     )

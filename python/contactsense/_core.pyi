@@ -977,9 +977,7 @@ class NoiseModel:
         """Slow errors left over [Nm; N for sliding joints]: a number or `(nv,)`; a read-only copy."""
     @property
     def friction(self) -> float | NDArray[np.float64]:
-        """Errors of friction while a joint starts, stops or turns round [Nm; N for sliding joints]: a number or `(nv,)`; a
-        read-only copy.
-        """
+        """Errors of friction at starts and stops [Nm; N for sliding joints]: a number or `(nv,)`; a read-only copy."""
     @property
     def bias(self) -> float | NDArray[np.float64]:
         """What the bias differs by from one start to the next [Nm; N for sliding joints]: a number or `(nv,)`; a read-only copy."""

@@ -82,6 +82,7 @@ OTHER_CONTENT = {
     "payload",
     "sensor_offsets",
     "contacts",
+    "tails",
     "notes",
 }
 

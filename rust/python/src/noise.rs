@@ -110,8 +110,7 @@ impl PyNoiseModel {
         values(py, &self.0.model_time)
     }
 
-    /// Errors of friction while a joint starts, stops or turns round [Nm; N for sliding joints]: a number or `(nv,)`; a
-    /// read-only copy.
+    /// Errors of friction at starts and stops [Nm; N for sliding joints]: a number or `(nv,)`; a read-only copy.
     #[getter]
     fn friction<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         values(py, &self.0.friction)
