@@ -52,7 +52,9 @@ def objects():
     torque = push(robot, link)
     pose = np.eye(4)
     pose[:3, :3] = [[math.cos(0.3), -math.sin(0.3), 0], [math.sin(0.3), math.cos(0.3), 0], [0, 0, 1]]
-    sensor = cs.ForceTorqueSensor("wrist", link, pose=pose, convention="support")
+    sensor = cs.ForceTorqueSensor(
+        "wrist", link, pose=pose, convention="support", offset=[1, 0, -2, 0, 0.5, 0]
+    )
     isolation = cs.ContactIsolator(robot).isolate(Q, torque)
     sensors = [cs.ForceTorqueSensor("elbow", robot.link_names[3])]
     monitor = cs.ContactMonitor(robot, dt=1e-3, sensors=sensors)

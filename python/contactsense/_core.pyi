@@ -568,6 +568,8 @@ class ForceTorqueSensor:
         pose: The sensor frame in the link's, `(4, 4)` [m]; None for the link frame itself.
         convention: "load": what the distal side exerts on the sensor (a free hand at rest: its weight); "support": the
             opposite.
+        offset: What the sensor reads without load, `(6,)` [N, Nm], in its own axes and convention: subtracted from
+            readings before all else. None for zeros.
 
     Raises:
         InputError: Names the argument.
@@ -589,6 +591,7 @@ class ForceTorqueSensor:
         *,
         pose: ArrayLike | None = None,
         convention: Literal["load", "support"] = "load",
+        offset: ArrayLike | None = None,
     ) -> Self: ...
     @property
     def name(self) -> str:
@@ -602,6 +605,9 @@ class ForceTorqueSensor:
     @property
     def convention(self) -> Literal["load", "support"]:
         """What a reading means: "load" or "support"."""
+    @property
+    def offset(self) -> NDArray[np.float64]:
+        """What the sensor reads without load, `(6,)` [N, Nm], in its own axes and convention; a read-only copy."""
     def __hash__(self) -> int: ...
 
 @final
@@ -613,6 +619,8 @@ class LoadCompensator:
     Args:
         robot: The robot.
         sensors: Of `ForceTorqueSensor`; names and links are unique.
+        calibration: A `Calibration` of this robot: inertias are those that its motion showed, and its `sensor_offsets`
+            replace the offset of each sensor that they name.
 
     Raises:
         InputError: Names the argument.
@@ -625,13 +633,37 @@ class LoadCompensator:
         (1, 6)
     """
 
-    def __new__(cls, robot: Robot, sensors: Iterable[ForceTorqueSensor]) -> Self: ...
+    def __new__(
+        cls, robot: Robot, sensors: Iterable[ForceTorqueSensor], *, calibration: Calibration | None = None
+    ) -> Self: ...
     @property
     def robot(self) -> Robot:
         """The robot."""
     @property
     def sensors(self) -> tuple[ForceTorqueSensor, ...]:
-        """The sensors, of `ForceTorqueSensor`, in the order of the wrenches."""
+        """The sensors, of `ForceTorqueSensor`, in the order of the wrenches, with their present offsets."""
+    @property
+    def offsets(self) -> NDArray[np.float64]:
+        """What is subtracted from the readings, `(n_sensors, 6)` [N, Nm], sensor axes; a read-only copy. Can be set."""
+    @offsets.setter
+    def offsets(self, offsets: ArrayLike) -> None: ...
+    def tare(self, q: ArrayLike, wrenches: ArrayLike) -> NDArray[np.float64]:
+        """Sets the offsets so that the free load reads zero.
+
+        The robot is at rest at `q`, and nothing touches it behind the sensors. One pose cannot tell an offset from a
+        weight that the robot lacks: where the tool is not in the model, see `identify_tool`.
+
+        Args:
+            q: Configuration, `(nq,)`.
+            wrenches: Readings as the sensors give them, `(n_sensors, 6)`, or several rows `(n, n_sensors, 6)`, whose mean
+                counts [N, Nm], sensor axes. A NaN leaves a reading out; a sensor without any keeps its offset.
+
+        Returns:
+            The offsets, `(n_sensors, 6)` [N, Nm]; read-only.
+
+        Raises:
+            InputError: Names the argument; the offsets are then unchanged.
+        """
     def update(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, wrenches: ArrayLike) -> NDArray[np.float64]:
         """The external wrench that each sensor sees.
 
