@@ -22,6 +22,8 @@ SIGNATURES = {
     "ForceTorqueSensor": "name, link, *, pose=None, convention='load', offset=None",
     "LoadCompensator": "robot, sensors, *, calibration=None",
     "LoadCompensator.tare": "q, wrenches",
+    "identify_tool": "robot, sensor, q, wrenches",
+    "ToolLoad.to_dict": "",
     "LoadCompensator.update": "q, v, a, wrenches",
     "NoiseModel": "*, torque=0.05, velocity=0.0, relative=0.03, model=0.1, model_time=1.0",
     "calibrate": "robot, log, *, false_alarms_per_hour=1.0, payload_link=None",

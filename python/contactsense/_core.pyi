@@ -681,6 +681,93 @@ class LoadCompensator:
             InputError: Names the argument.
         """
 
+@final
+class ToolLoad:
+    """A tool behind a force/torque sensor, and the sensor's offset, as `identify_tool` finds them.
+
+    `robot.with_payload(tool.link, tool.mass, tool.com)` and a sensor with `offset=tool.offset` read zero where nothing
+    touches the robot. Frozen; equal where all numbers are; can be pickled and copied.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> sensor = cs.ForceTorqueSensor("wrist", "iiwa_link_7")
+        >>> q = np.array([robot.random_configuration(seed) for seed in range(6)])
+        >>> compensator = cs.LoadCompensator(robot, [sensor])
+        >>> readings = np.concatenate([-compensator.tare(row, np.zeros((1, 6))) for row in q])
+        >>> tool = cs.identify_tool(robot, sensor, q, readings)  # of a robot that has no tool
+        >>> round(tool.mass, 6), tool.com_std.round(3).tolist()
+        (0.0, [0.3, 0.3, 0.3])
+    """
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def link(self) -> str:
+        """The sensor's link, which holds the tool."""
+    @property
+    def mass(self) -> float:
+        """Mass in addition to the robot's description [kg]; not negative."""
+    @property
+    def mass_std(self) -> float:
+        """Standard deviation of `mass` [kg]."""
+    @property
+    def com(self) -> NDArray[np.float64]:
+        """Its centre of mass, `(3,)`, link frame [m]; a read-only copy."""
+    @property
+    def com_std(self) -> NDArray[np.float64]:
+        """Standard deviation of each coordinate of `com`, `(3,)` [m]; a read-only copy. 0.3 m where the mass is too small to tell."""
+    @property
+    def offset(self) -> NDArray[np.float64]:
+        """What the sensor reads without load, `(6,)` [N, Nm], in its own axes and convention; a read-only copy."""
+    @property
+    def offset_std(self) -> NDArray[np.float64]:
+        """Standard deviation of each number of `offset`, `(6,)` [N, Nm]; a read-only copy."""
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """Covariance of mass, centre of mass and offset, in this order, `(10, 10)` [kg, m, N, Nm]; a read-only copy."""
+    @property
+    def residual(self) -> NDArray[np.float64]:
+        """What is left of the mean readings, root mean square over the poses, `(6,)` [N, Nm]; a read-only copy."""
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, strings, and lists in place of arrays.
+        """
+
+def identify_tool(robot: Robot, sensor: ForceTorqueSensor, q: ArrayLike, wrenches: ArrayLike) -> ToolLoad:
+    """Finds the mass and centre of a tool that the robot's description lacks, and the sensor's offset, from poses at rest.
+
+    For a sensor that was zeroed with the tool on, or never: one pose cannot tell offset from weight, four can. Gravity must
+    point in four directions of the sensor frame that differ about two axes; more and larger differences are better. The
+    robot stands still in each pose, and nothing touches it behind the sensor. The sensor's own `offset` is not looked at.
+
+    Args:
+        robot: The robot, without the tool.
+        sensor: A `ForceTorqueSensor`.
+        q: Configurations, `(n, nq)`, one for each pose.
+        wrenches: Readings as the sensor gives them, `(n, 6)`, or several in each pose, `(n, k, 6)`, whose mean counts
+            [N, Nm], sensor axes. A NaN leaves a reading out; a pose without any is left out.
+
+    Returns:
+        A `ToolLoad`.
+
+    Raises:
+        InputError: Names the argument: also where the poses do not suffice, with the directions of gravity that are missing,
+            and where the readings are those of no tool.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> sensor = cs.ForceTorqueSensor("wrist", "iiwa_link_7")
+        >>> loaded = cs.LoadCompensator(robot.with_payload("iiwa_link_7", 1.2, [0.0, 0.0, 0.1]), [sensor])
+        >>> q = np.array([robot.random_configuration(seed) for seed in range(6)])
+        >>> readings = np.concatenate([-loaded.tare(row, np.zeros((1, 6))) for row in q])
+        >>> tool = cs.identify_tool(robot, sensor, q, readings + [5.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+        >>> round(tool.mass, 3), round(float(tool.com[2]), 3), round(float(tool.offset[0]), 3)
+        (1.2, 0.1, 5.0)
+    """
+
 @disjoint_base
 class Calibration:
     """Base of the class that users have, which adds files."""

@@ -118,6 +118,23 @@ impl Readings {
         }
     }
 
+    /// One sensor's readings in several poses, `(n, 6)`, or equally many in each, `(n, k, 6)`; flat.
+    pub fn in_poses(object: &Bound<'_, PyAny>, poses: usize) -> PyResult<Self> {
+        let wrong = |_| {
+            let text = format!("wrenches: expected an array of shape ({poses}, 6) or ({poses}, k, 6)");
+            input(object.py(), text)
+        };
+        let converted = convert("wrenches", object)?;
+        let array = converted.cast::<PyArrayDyn<f64>>().map_err(|_| wrong(()))?;
+        let view = array.try_readonly().map_err(|_| wrong(()))?;
+        match view.shape() {
+            [n, 6] | [n, _, 6] if *n == poses => {}
+            _ => return Err(wrong(())),
+        }
+        let rows = own(view.as_slice().map_err(|_| wrong(()))?)?;
+        Ok(Self(rows.as_chunks().0.iter().map(|row| reading(*row)).collect()))
+    }
+
     pub fn rows(&self) -> &[Option<[f64; 6]>] {
         &self.0
     }

@@ -66,12 +66,7 @@ impl LoadCompensator {
             return Err(wrong_count(&self.tree, wrenches.len()));
         }
         wrenches.chunks_exact(count).try_for_each(|row| check_numbers(&self.tree, row))?;
-        let still = vec![0.0; self.robot.nv()];
-        let mut kinematics = Kinematics::new(&self.robot);
-        kinematics.set_configuration(&self.robot, q);
-        kinematics.set_velocity(&self.robot, &still);
-        self.accelerate(&kinematics, &still);
-        self.load(&kinematics);
+        let kinematics = self.rest(q);
         for sensor in 0..count {
             if let Some(mean) = mean(wrenches.iter().skip(sensor).step_by(count).flatten()) {
                 let offset = mean - self.free_reading(&kinematics, sensor);
@@ -79,6 +74,28 @@ impl LoadCompensator {
             }
         }
         Ok(())
+    }
+
+    /// What the first sensor reads at rest, without offset and contact, and gravity in its axes.
+    ///
+    /// # Errors
+    /// [`Error::Input`] names the argument.
+    pub(in crate::sensor) fn free_reading_at(&mut self, q: &[f64]) -> Result<(Vector6<f64>, Vector3<f64>)> {
+        self.robot.check_configuration(q)?;
+        let kinematics = self.rest(q);
+        let gravity = self.tree.rotation(&kinematics, 0).tr_mul(&self.robot.gravity);
+        Ok((self.free_reading(&kinematics, 0), gravity))
+    }
+
+    /// Finds the loads of the robot at rest.
+    fn rest(&mut self, q: &[f64]) -> Kinematics {
+        let still = vec![0.0; self.robot.nv()];
+        let mut kinematics = Kinematics::new(&self.robot);
+        kinematics.set_configuration(&self.robot, q);
+        kinematics.set_velocity(&self.robot, &still);
+        self.accelerate(&kinematics, &still);
+        self.load(&kinematics);
+        kinematics
     }
 
     /// What a sensor without offset reads where nothing but its free load acts on it.
