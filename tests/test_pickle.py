@@ -52,7 +52,9 @@ def objects():
     torque = push(robot, link)
     pose = np.eye(4)
     pose[:3, :3] = [[math.cos(0.3), -math.sin(0.3), 0], [math.sin(0.3), math.cos(0.3), 0], [0, 0, 1]]
-    sensor = cs.ForceTorqueSensor("wrist", link, pose=pose, convention="support")
+    sensor = cs.ForceTorqueSensor(
+        "wrist", link, pose=pose, convention="support", offset=[1, 0, -2, 0, 0.5, 0]
+    )
     isolation = cs.ContactIsolator(robot).isolate(Q, torque)
     sensors = [cs.ForceTorqueSensor("elbow", robot.link_names[3])]
     monitor = cs.ContactMonitor(robot, dt=1e-3, sensors=sensors)
@@ -64,6 +66,9 @@ def objects():
     particle_filter = cs.ContactParticleFilter(robot, particles=500, seed=3)
     quiet = particle_filter.update(Q, zeros)
     estimate = particle_filter.update(Q, torque)
+    tared = cs.LoadCompensator(robot, sensors)
+    poses = np.array([robot.random_configuration(seed) for seed in range(5)])
+    weights = np.concatenate([-tared.tare(q, np.ones((1, 6))) for q in poses])
     calibration = cs.Calibration.of_description(robot)
     assert isolation.contacts[0].candidates
     assert report.contacts
@@ -84,12 +89,13 @@ def objects():
         "ContactEstimate without contact": quiet,
         "Mode": estimate.modes[0],
         "Particles": particle_filter.particles,
+        "ToolLoad": cs.identify_tool(robot, sensors[0], poses, weights),
         "Motion": cs.exciting_motion(robot, 1.0, dt=0.05),
     }
 
 
 # Settings, whose arrays are copies at every access.
-COPIES = (cs.ForceTorqueSensor, cs.NoiseModel, cs.Calibration, cs.JointFriction, cs.BodyInertia)
+COPIES = (cs.ForceTorqueSensor, cs.NoiseModel, cs.Calibration, cs.JointFriction, cs.BodyInertia, cs.ToolLoad)
 NAMES = [
     "ForceTorqueSensor",
     "NoiseModel",
@@ -106,6 +112,7 @@ NAMES = [
     "ContactEstimate",
     "Mode",
     "Particles",
+    "ToolLoad",
     "Motion",
 ]
 
@@ -121,7 +128,14 @@ def test_a_round_trip_keeps_every_bit(objects, name, way):
 
 
 def test_settings_are_equal_after_a_round_trip(objects):
-    for name in ("ForceTorqueSensor", "NoiseModel", "Calibration", "JointFriction", "BodyInertia"):
+    for name in (
+        "ForceTorqueSensor",
+        "NoiseModel",
+        "Calibration",
+        "JointFriction",
+        "BodyInertia",
+        "ToolLoad",
+    ):
         assert pickle.loads(pickle.dumps(objects[name])) == objects[name]
 
 

@@ -19,8 +19,11 @@ SIGNATURES = {
     "MomentumObserver": "robot, *, dt, gain=50.0, calibration=None",
     "MomentumObserver.update": "q, v, tau, *, dt=None, friction=None",
     "MomentumObserver.reset": "",
-    "ForceTorqueSensor": "name, link, *, pose=None, convention='load'",
-    "LoadCompensator": "robot, sensors",
+    "ForceTorqueSensor": "name, link, *, pose=None, convention='load', offset=None",
+    "LoadCompensator": "robot, sensors, *, calibration=None",
+    "LoadCompensator.tare": "q, wrenches",
+    "identify_tool": "robot, sensor, q, wrenches",
+    "ToolLoad.to_dict": "",
     "LoadCompensator.update": "q, v, a, wrenches",
     "NoiseModel": "*, torque=0.05, velocity=0.0, relative=0.03, model=0.1, model_time=1.0, "
     "friction=0.0, bias=0.0",

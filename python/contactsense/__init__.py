@@ -24,10 +24,12 @@ from ._core import (
     RayHits,
     Surface,
     SurfaceSamples,
+    ToolLoad,
     __version__,
     build_profile,
     diagnose,
     exciting_motion,
+    identify_tool,
 )
 from .calibration import Calibration, calibrate
 from .errors import ContactSenseError, GeometryError, InputError, ModelError
@@ -65,9 +67,11 @@ __all__ = [
     "Robot",
     "Surface",
     "SurfaceSamples",
+    "ToolLoad",
     "__version__",
     "build_profile",
     "calibrate",
     "diagnose",
     "exciting_motion",
+    "identify_tool",
 ]

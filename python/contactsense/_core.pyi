@@ -568,6 +568,8 @@ class ForceTorqueSensor:
         pose: The sensor frame in the link's, `(4, 4)` [m]; None for the link frame itself.
         convention: "load": what the distal side exerts on the sensor (a free hand at rest: its weight); "support": the
             opposite.
+        offset: What the sensor reads without load, `(6,)` [N, Nm], in its own axes and convention: subtracted from
+            readings before all else. None for zeros.
 
     Raises:
         InputError: Names the argument.
@@ -589,6 +591,7 @@ class ForceTorqueSensor:
         *,
         pose: ArrayLike | None = None,
         convention: Literal["load", "support"] = "load",
+        offset: ArrayLike | None = None,
     ) -> Self: ...
     @property
     def name(self) -> str:
@@ -602,6 +605,9 @@ class ForceTorqueSensor:
     @property
     def convention(self) -> Literal["load", "support"]:
         """What a reading means: "load" or "support"."""
+    @property
+    def offset(self) -> NDArray[np.float64]:
+        """What the sensor reads without load, `(6,)` [N, Nm], in its own axes and convention; a read-only copy."""
     def __hash__(self) -> int: ...
 
 @final
@@ -613,6 +619,8 @@ class LoadCompensator:
     Args:
         robot: The robot.
         sensors: Of `ForceTorqueSensor`; names and links are unique.
+        calibration: A `Calibration` of this robot: inertias are those that its motion showed, and its `sensor_offsets`
+            replace the offset of each sensor that they name.
 
     Raises:
         InputError: Names the argument.
@@ -625,13 +633,37 @@ class LoadCompensator:
         (1, 6)
     """
 
-    def __new__(cls, robot: Robot, sensors: Iterable[ForceTorqueSensor]) -> Self: ...
+    def __new__(
+        cls, robot: Robot, sensors: Iterable[ForceTorqueSensor], *, calibration: Calibration | None = None
+    ) -> Self: ...
     @property
     def robot(self) -> Robot:
         """The robot."""
     @property
     def sensors(self) -> tuple[ForceTorqueSensor, ...]:
-        """The sensors, of `ForceTorqueSensor`, in the order of the wrenches."""
+        """The sensors, of `ForceTorqueSensor`, in the order of the wrenches, with their present offsets."""
+    @property
+    def offsets(self) -> NDArray[np.float64]:
+        """What is subtracted from the readings, `(n_sensors, 6)` [N, Nm], sensor axes; a read-only copy. Can be set."""
+    @offsets.setter
+    def offsets(self, offsets: ArrayLike) -> None: ...
+    def tare(self, q: ArrayLike, wrenches: ArrayLike) -> NDArray[np.float64]:
+        """Sets the offsets so that the free load reads zero.
+
+        The robot is at rest at `q`, and nothing touches it behind the sensors. One pose cannot tell an offset from a
+        weight that the robot lacks: where the tool is not in the model, see `identify_tool`.
+
+        Args:
+            q: Configuration, `(nq,)`.
+            wrenches: Readings as the sensors give them, `(n_sensors, 6)`, or several rows `(n, n_sensors, 6)`, whose mean
+                counts [N, Nm], sensor axes. A NaN leaves a reading out; a sensor without any keeps its offset.
+
+        Returns:
+            The offsets, `(n_sensors, 6)` [N, Nm]; read-only.
+
+        Raises:
+            InputError: Names the argument; the offsets are then unchanged.
+        """
     def update(self, q: ArrayLike, v: ArrayLike, a: ArrayLike, wrenches: ArrayLike) -> NDArray[np.float64]:
         """The external wrench that each sensor sees.
 
@@ -648,6 +680,93 @@ class LoadCompensator:
         Raises:
             InputError: Names the argument.
         """
+
+@final
+class ToolLoad:
+    """A tool behind a force/torque sensor, and the sensor's offset, as `identify_tool` finds them.
+
+    `robot.with_payload(tool.link, tool.mass, tool.com)` and a sensor with `offset=tool.offset` read zero where nothing
+    touches the robot. Frozen; equal where all numbers are; can be pickled and copied.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> sensor = cs.ForceTorqueSensor("wrist", "iiwa_link_7")
+        >>> q = np.array([robot.random_configuration(seed) for seed in range(6)])
+        >>> compensator = cs.LoadCompensator(robot, [sensor])
+        >>> readings = np.concatenate([-compensator.tare(row, np.zeros((1, 6))) for row in q])
+        >>> tool = cs.identify_tool(robot, sensor, q, readings)  # of a robot that has no tool
+        >>> round(tool.mass, 6), tool.com_std.round(3).tolist()
+        (0.0, [0.3, 0.3, 0.3])
+    """
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def link(self) -> str:
+        """The sensor's link, which holds the tool."""
+    @property
+    def mass(self) -> float:
+        """Mass in addition to the robot's description [kg]; not negative."""
+    @property
+    def mass_std(self) -> float:
+        """Standard deviation of `mass` [kg]."""
+    @property
+    def com(self) -> NDArray[np.float64]:
+        """Its centre of mass, `(3,)`, link frame [m]; a read-only copy."""
+    @property
+    def com_std(self) -> NDArray[np.float64]:
+        """Standard deviation of each coordinate of `com`, `(3,)` [m]; a read-only copy. 0.3 m where the mass is too small to tell."""
+    @property
+    def offset(self) -> NDArray[np.float64]:
+        """What the sensor reads without load, `(6,)` [N, Nm], in its own axes and convention; a read-only copy."""
+    @property
+    def offset_std(self) -> NDArray[np.float64]:
+        """Standard deviation of each number of `offset`, `(6,)` [N, Nm]; a read-only copy."""
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """Covariance of mass, centre of mass and offset, in this order, `(10, 10)` [kg, m, N, Nm]; a read-only copy."""
+    @property
+    def residual(self) -> NDArray[np.float64]:
+        """What is left of the mean readings, root mean square over the poses, `(6,)` [N, Nm]; a read-only copy."""
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, strings, and lists in place of arrays.
+        """
+
+def identify_tool(robot: Robot, sensor: ForceTorqueSensor, q: ArrayLike, wrenches: ArrayLike) -> ToolLoad:
+    """Finds the mass and centre of a tool that the robot's description lacks, and the sensor's offset, from poses at rest.
+
+    For a sensor that was zeroed with the tool on, or never: one pose cannot tell offset from weight, four can. Gravity must
+    point in four directions of the sensor frame that differ about two axes; more and larger differences are better. The
+    robot stands still in each pose, and nothing touches it behind the sensor. The sensor's own `offset` is not looked at.
+
+    Args:
+        robot: The robot, without the tool.
+        sensor: A `ForceTorqueSensor`.
+        q: Configurations, `(n, nq)`, one for each pose.
+        wrenches: Readings as the sensor gives them, `(n, 6)`, or several in each pose, `(n, k, 6)`, whose mean counts
+            [N, Nm], sensor axes. A NaN leaves a reading out; a pose without any is left out.
+
+    Returns:
+        A `ToolLoad`.
+
+    Raises:
+        InputError: Names the argument: also where the poses do not suffice, with the directions of gravity that are missing,
+            and where the readings are those of no tool.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> sensor = cs.ForceTorqueSensor("wrist", "iiwa_link_7")
+        >>> loaded = cs.LoadCompensator(robot.with_payload("iiwa_link_7", 1.2, [0.0, 0.0, 0.1]), [sensor])
+        >>> q = np.array([robot.random_configuration(seed) for seed in range(6)])
+        >>> readings = np.concatenate([-loaded.tare(row, np.zeros((1, 6))) for row in q])
+        >>> tool = cs.identify_tool(robot, sensor, q, readings + [5.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+        >>> round(tool.mass, 3), round(float(tool.com[2]), 3), round(float(tool.offset[0]), 3)
+        (1.2, 0.1, 5.0)
+    """
 
 @disjoint_base
 class Calibration:

@@ -51,10 +51,11 @@ class WrenchReader:
         # MuJoCo gives what the parent exerts to hold the child.
         signs = [1.0 if sensor.convention == "support" else -1.0 for sensor in sensors]
         self._signs = np.array(signs).reshape(-1, 1)
+        self._offsets = np.array([sensor.offset for sensor in sensors]).reshape(-1, 6)
 
     def read(self, mj_data: mujoco.MjData) -> FloatArray:
-        """(n, 6) force [N] and moment about the sensor's origin [Nm], in the sensors' frames."""
-        wrenches: FloatArray = self._signs * mj_data.sensordata[self._rows]
+        """(n, 6) force [N] and moment about each origin [Nm], in the sensors' frames, offsets included."""
+        wrenches: FloatArray = self._signs * mj_data.sensordata[self._rows] + self._offsets
         return wrenches
 
 

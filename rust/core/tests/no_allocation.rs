@@ -11,8 +11,7 @@ use contactsense::monitor::{ContactMonitor, MonitorOptions};
 use contactsense::observer::MomentumObserver;
 use contactsense::particle::{ContactParticleFilter, FilterOptions};
 use contactsense::robot::Robot;
-use contactsense::sensor::{Convention, ForceTorqueSensor, LoadCompensator};
-use contactsense::spatial::Pose;
+use contactsense::sensor::{ForceTorqueSensor, LoadCompensator};
 use contactsense::Sample;
 use nalgebra::Vector3;
 
@@ -264,11 +263,5 @@ fn an_update_of_particles_allocates_nothing_on_one_thread() {
 fn sensors_of(robot: &Robot) -> Vec<ForceTorqueSensor> {
     let is_end = |name: &str| name.ends_with("_1") || name.ends_with("_5");
     let links = robot.links().iter().filter(|link| is_end(&link.name));
-    let sensor = |name: &String| ForceTorqueSensor {
-        name: name.clone(),
-        link: name.clone(),
-        pose: Pose::identity(),
-        convention: Convention::Load,
-    };
-    links.map(|link| sensor(&link.name)).collect()
+    links.map(|link| ForceTorqueSensor::new(link.name.clone(), link.name.clone())).collect()
 }

@@ -91,13 +91,57 @@ impl Readings {
         Ok(Self(rows.into_iter().map(reading).collect()))
     }
 
+    /// Several rows `(n, n_sensors, 6)`, flat; of as many rows as given, if so.
+    pub fn several(object: &Bound<'_, PyAny>, rows: Option<usize>, sensors: usize) -> PyResult<Self> {
+        let expected = rows.map_or_else(|| format!("(n, {sensors}, 6)"), |n| format!("({n}, {sensors}, 6)"));
+        let table = Table::new("wrenches", object, 3, &expected)?;
+        if table.shape[1..] != [sensors, 6] || rows.is_some_and(|rows| rows != table.shape[0]) {
+            let text = format!("wrenches: expected shape {expected}, got {:?}", table.shape);
+            return Err(input(object.py(), text));
+        }
+        Ok(Self(table.numbers.as_chunks().0.iter().map(|row| reading(*row)).collect()))
+    }
+
+    /// One row `(n_sensors, 6)`, or several, flat.
+    pub fn one_or_several(object: &Bound<'_, PyAny>, sensors: usize) -> PyResult<Self> {
+        let converted = convert("wrenches", object)?;
+        match converted.cast::<PyArrayDyn<f64>>() {
+            Ok(array) if array.ndim() == 3 => Self::several(&converted, None, sensors),
+            _ => {
+                let readings = Self::new(&converted)?;
+                if readings.0.len() == sensors {
+                    return Ok(readings);
+                }
+                let text = format!("wrenches: expected shape ({sensors}, 6) or (n, {sensors}, 6)");
+                Err(input(object.py(), text))
+            }
+        }
+    }
+
+    /// One sensor's readings in several poses, `(n, 6)`, or equally many in each, `(n, k, 6)`; flat.
+    pub fn in_poses(object: &Bound<'_, PyAny>, poses: usize) -> PyResult<Self> {
+        let wrong = |_| {
+            let text = format!("wrenches: expected an array of shape ({poses}, 6) or ({poses}, k, 6)");
+            input(object.py(), text)
+        };
+        let converted = convert("wrenches", object)?;
+        let array = converted.cast::<PyArrayDyn<f64>>().map_err(|_| wrong(()))?;
+        let view = array.try_readonly().map_err(|_| wrong(()))?;
+        match view.shape() {
+            [n, 6] | [n, _, 6] if *n == poses => {}
+            _ => return Err(wrong(())),
+        }
+        let rows = own(view.as_slice().map_err(|_| wrong(()))?)?;
+        Ok(Self(rows.as_chunks().0.iter().map(|row| reading(*row)).collect()))
+    }
+
     pub fn rows(&self) -> &[Option<[f64; 6]>] {
         &self.0
     }
 }
 
 /// A NaN leaves its sensor out, unless the row is refused for another number.
-pub fn reading(row: [f64; 6]) -> Option<[f64; 6]> {
+fn reading(row: [f64; 6]) -> Option<[f64; 6]> {
     let none = row.iter().any(|x| x.is_nan()) && !row.iter().any(|x| x.abs() >= LARGEST);
     (!none).then_some(row)
 }

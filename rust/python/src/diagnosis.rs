@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use crate::arguments::robot;
-use crate::arrays::{reading, Table, Vector};
+use crate::arrays::{Readings, Table, Vector};
 use crate::errors::{detached, input, to_python};
 use crate::pickle::{plain_dict, reduced, Reduced};
 use crate::returned::vector;
@@ -178,16 +178,9 @@ pub fn diagnose<'py>(
     }
     let time = Vector::optional("time", time)?;
     let readings = match wrenches {
-        None if sensors.is_empty() => vec![],
+        None if sensors.is_empty() => None,
         None => return Err(input(py, "wrenches: expected the readings of the sensors".into())),
-        Some(wrenches) => {
-            let table = Table::new("wrenches", wrenches, 3, &format!("({n}, {}, 6)", sensors.len()))?;
-            if table.shape != [n, sensors.len(), 6] {
-                let wanted = format!("({n}, {}, 6)", sensors.len());
-                return Err(input(py, format!("wrenches: expected shape {wanted}, got {:?}", table.shape)));
-            }
-            table.numbers.as_chunks().0.iter().map(|row| reading(*row)).collect()
-        }
+        Some(wrenches) => Some(Readings::several(wrenches, Some(n), sensors.len())?),
     };
     let recording = Recording {
         time: time.as_ref().map(Vector::slice),
@@ -195,7 +188,7 @@ pub fn diagnose<'py>(
         v: &v.numbers,
         tau: &tau.numbers,
         sensors: &sensors,
-        wrenches: &readings,
+        wrenches: readings.as_ref().map_or(&[], Readings::rows),
     };
     let findings =
         detached(py, || diagnosis::diagnose(core, &recording))?.map_err(|error| to_python(py, error))?;

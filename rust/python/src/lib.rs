@@ -33,6 +33,7 @@ mod robot_mechanics;
 mod robot_vectors;
 mod sensor;
 mod surface;
+mod tool_load;
 mod urdf;
 
 // Arguments are copied out of NumPy arrays that another thread may write to; only the GIL keeps the two apart.
@@ -54,6 +55,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<observer::PyMomentumObserver>()?;
     module.add_class::<sensor::PyForceTorqueSensor>()?;
     module.add_class::<compensator::PyLoadCompensator>()?;
+    module.add_class::<tool_load::PyToolLoad>()?;
+    module.add_function(wrap_pyfunction!(tool_load::identify_tool, module)?)?;
     module.add_class::<noise::PyNoiseModel>()?;
     module.add_function(wrap_pyfunction!(calibration::_calibrate, module)?)?;
     module.add_class::<calibration::PyCalibration>()?;

@@ -21,6 +21,7 @@ use crate::particle::Particles;
 use crate::report::PyContactReport;
 use crate::sensor::PyForceTorqueSensor;
 use crate::surface::{ClosestPoints, RayHits, SurfaceSamples};
+use crate::tool_load::PyToolLoad;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
@@ -75,6 +76,7 @@ pub fn _restore<'py>(
         "Finding" => made(py, PyFinding(read(content)?)),
         "NoiseModel" => made(py, PyNoiseModel(read(content)?)),
         "ForceTorqueSensor" => made(py, PyForceTorqueSensor(read(content)?)),
+        "ToolLoad" => made(py, PyToolLoad(read(content)?)),
         "ClosestPoints" => made(py, ClosestPoints::from_arrays(content)?),
         "RayHits" => made(py, RayHits::from_arrays(content)?),
         "SurfaceSamples" => made(py, SurfaceSamples::from_arrays(content)?),

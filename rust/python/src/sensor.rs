@@ -1,17 +1,18 @@
 //! `ForceTorqueSensor`.
 
+use contactsense::robot::LARGEST;
 use contactsense::sensor::{Convention, ForceTorqueSensor};
 use contactsense::spatial::Pose;
-use numpy::PyArray2;
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyString, PyTuple};
 
 use crate::arguments::{number_if_any, shown, text};
-use crate::arrays::rows;
+use crate::arrays::{rows, Vector};
 use crate::description::placement;
 use crate::errors::{input, refused};
 use crate::pickle::{reduced, Reduced};
-use crate::returned::{pose, read_only};
+use crate::returned::{numbers, pose, read_only};
 
 /// A six-axis force/torque sensor where `link` joins its parent: `link` and all behind it load the sensor.
 ///
@@ -24,6 +25,8 @@ use crate::returned::{pose, read_only};
 ///     pose: The sensor frame in the link's, `(4, 4)` [m]; None for the link frame itself.
 ///     convention: "load": what the distal side exerts on the sensor (a free hand at rest: its weight); "support": the
 ///         opposite.
+///     offset: What the sensor reads without load, `(6,)` [N, Nm], in its own axes and convention: subtracted from
+///         readings before all else. None for zeros.
 ///
 /// Raises:
 ///     InputError: Names the argument.
@@ -42,14 +45,15 @@ pub struct PyForceTorqueSensor(pub ForceTorqueSensor);
 #[pymethods]
 impl PyForceTorqueSensor {
     #[new]
-    #[pyo3(signature = (name, link, *, pose=None, convention=None),
-           text_signature = "(name, link, *, pose=None, convention='load')")]
+    #[pyo3(signature = (name, link, *, pose=None, convention=None, offset=None),
+           text_signature = "(name, link, *, pose=None, convention='load', offset=None)")]
     fn new(
         py: Python<'_>,
         name: &Bound<'_, PyAny>,
         link: &Bound<'_, PyAny>,
         pose: Option<&Bound<'_, PyAny>>,
         convention: Option<&Bound<'_, PyAny>>,
+        offset: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let convention = match convention.map_or(Ok("load"), |convention| text("convention", convention))? {
             "load" => Convention::Load,
@@ -59,8 +63,9 @@ impl PyForceTorqueSensor {
             }
         };
         let pose = pose.map_or(Ok(Pose::identity()), |object| placement("pose", object))?;
+        let offset = offset.map_or(Ok([0.0; 6]), |offset| wrench("offset", offset))?;
         let (name, link) = (text("name", name)?.into(), text("link", link)?.into());
-        Ok(Self(ForceTorqueSensor { name, link, pose, convention }))
+        Ok(Self(ForceTorqueSensor { name, link, pose, convention, offset }))
     }
 
     /// Name of the sensor.
@@ -87,6 +92,12 @@ impl PyForceTorqueSensor {
         self.0.convention.name()
     }
 
+    /// What the sensor reads without load, `(6,)` [N, Nm], in its own axes and convention; a read-only copy.
+    #[getter]
+    fn offset<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        numbers(py, &self.0.offset)
+    }
+
     fn __hash__(&self) -> u64 {
         use std::hash::{DefaultHasher, Hash, Hasher};
         let mut hasher = DefaultHasher::new();
@@ -99,9 +110,19 @@ impl PyForceTorqueSensor {
     }
 
     fn __repr__(&self) -> String {
-        let Self(ForceTorqueSensor { name, link, convention, .. }) = self;
-        format!("ForceTorqueSensor('{name}', '{link}', convention='{}')", convention.name())
+        let Self(ForceTorqueSensor { name, link, convention, offset, .. }) = self;
+        let offset = if *offset == [0.0; 6] { String::new() } else { format!(", offset={offset:?}") };
+        format!("ForceTorqueSensor('{name}', '{link}', convention='{}'{offset})", convention.name())
     }
+}
+
+/// One force and moment of a size that can be computed with.
+fn wrench(name: &str, object: &Bound<'_, PyAny>) -> PyResult<[f64; 6]> {
+    let wrench = Vector::new(name, object)?.fixed::<6>(object.py(), name)?;
+    if wrench.iter().all(|x| x.abs() < LARGEST) {
+        return Ok(wrench);
+    }
+    Err(input(object.py(), format!("{name}: must be finite and below {LARGEST:e} [N, Nm]")))
 }
 
 /// The sensors of an iterable; a single one is no iterable of sensors.

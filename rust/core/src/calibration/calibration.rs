@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::robot::check::principal_moments;
 use crate::robot::inertial_parameters::{moment_matrix, of_inertia, to_inertia, Parameters};
 use crate::robot::{LinkIndex, Robot, LARGEST};
+use crate::sensor::ForceTorqueSensor;
 use crate::spatial::Pose;
 use crate::torque::NoiseModel;
 
@@ -291,6 +292,10 @@ impl Calibration {
                 return Err(Error::input("calibration", text));
             }
         }
+        let offsets = self.sensor_offsets.iter().flat_map(|(_, offset)| offset);
+        if !offsets.into_iter().all(|x| x.abs() < LARGEST) {
+            return Err(Error::input("calibration", "sensor_offsets: must be finite"));
+        }
         if self.payload.as_ref().is_some_and(|payload| !(payload.mass >= 0.0 && payload.moment >= 0.0)) {
             return Err(Error::input("calibration", "payload: mass and moment must not be negative"));
         }
@@ -333,6 +338,15 @@ impl Calibration {
             }
             None => Ok(corrected),
         }
+    }
+
+    /// The sensors with the calibrated offsets; a sensor that the calibration does not know keeps its own.
+    pub fn sensors_with_offsets(&self, sensors: &[ForceTorqueSensor]) -> Vec<ForceTorqueSensor> {
+        let of = |sensor: &ForceTorqueSensor| {
+            let known = self.sensor_offsets.iter().find(|(name, _)| *name == sensor.name);
+            ForceTorqueSensor { offset: known.map_or(sensor.offset, |(_, offset)| *offset), ..sensor.clone() }
+        };
+        sensors.iter().map(of).collect()
     }
 
     /// What corrects velocities and torques.

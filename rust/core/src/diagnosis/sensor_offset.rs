@@ -97,7 +97,8 @@ fn finding(sensor: &ForceTorqueSensor, rows: &[(Vector6<f64>, Vector3<f64>)]) ->
     let left: f64 = rows.iter().map(|(wrench, _)| scaled(&(wrench - offset))).sum();
     let name = &sensor.name;
     let text = format!(
-        "sensor '{name}' reads ({:.2}, {:.2}, {:.2}) N and ({:.3}, {:.3}, {:.3}) Nm too much: subtract it from the readings",
+        "sensor '{name}' reads ({:.2}, {:.2}, {:.2}) N and ({:.3}, {:.3}, {:.3}) Nm too much: add it to the \
+         `offset` of the sensor",
         force.x, force.y, force.z, moment.x, moment.y, moment.z
     );
     let mut finding = Finding::new(FaultCode::SensorOffset, text);

@@ -110,12 +110,13 @@ impl MonitorOptions {
         }))
     }
 
-    /// With the noise of the calibration, and thresholds for its rate of false alarms, where none are given; `gain` `(nv,)`
-    /// is the observer's.
+    /// With the noise and the offsets of sensors of the calibration, and thresholds for its rate of false alarms, where none
+    /// are given; `gain` `(nv,)` is the observer's.
     pub(super) fn with_calibrated_noise(&self, corrected: &Robot, gain: &[f64]) -> Result<Self> {
         let mut options = self.clone();
         if let Some(calibration) = &self.calibration {
             let (noise, threshold) = calibration.noise_and_threshold(corrected, gain, self.dt)?;
+            options.isolation.sensors = calibration.sensors_with_offsets(&self.isolation.sensors);
             options.isolation.noise.get_or_insert(noise);
             options.isolation.torque_threshold.get_or_insert(threshold);
         }

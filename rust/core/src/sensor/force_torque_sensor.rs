@@ -1,5 +1,7 @@
 //! A six-axis force/torque sensor.
 
+use nalgebra::Vector6;
+
 use crate::spatial::Pose;
 
 /// Which side's wrench a reading is.
@@ -46,13 +48,11 @@ impl Convention {
 ///
 /// ```
 /// use contactsense::sensor::{Convention, ForceTorqueSensor};
-/// use contactsense::spatial::Pose;
 ///
 /// let sensor = ForceTorqueSensor {
-///     name: "wrist".into(),
-///     link: "link_7".into(),
-///     pose: Pose::identity(),
-///     convention: Convention::Load,
+///     convention: Convention::Support,
+///     offset: [0.0, 0.0, -12.0, 0.0, 0.0, 0.3],
+///     ..ForceTorqueSensor::new("wrist", "link_7")
 /// };
 /// assert_eq!(sensor.pose.check_rigid(), Ok(()));
 /// ```
@@ -68,4 +68,26 @@ pub struct ForceTorqueSensor {
     pub pose: Pose,
     /// What a reading means.
     pub convention: Convention,
+    /// Subtracted from readings before all else: what the sensor reads without load (N, Nm).
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub offset: [f64; 6],
+}
+
+impl ForceTorqueSensor {
+    /// A sensor in the link's frame that reads the load and is without offset.
+    pub fn new(name: impl Into<String>, link: impl Into<String>) -> Self {
+        ForceTorqueSensor {
+            name: name.into(),
+            link: link.into(),
+            pose: Pose::identity(),
+            convention: Convention::default(),
+            offset: [0.0; 6],
+        }
+    }
+
+    /// A reading without the offset: force and moment that the distal side exerts, sensor axes.
+    #[inline]
+    pub(crate) fn exerted(&self, reading: &[f64; 6]) -> Vector6<f64> {
+        (Vector6::from(*reading) - Vector6::from(self.offset)) * self.convention.sign()
+    }
 }

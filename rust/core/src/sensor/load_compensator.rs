@@ -1,5 +1,7 @@
 //! Readings free of the weight and inertia behind a sensor (Vorndamme 2017, eqs. 13-19 and Algorithm 1).
 
+mod offsets;
+
 use std::sync::Arc;
 
 use nalgebra::{Vector3, Vector6};
@@ -33,16 +35,10 @@ struct Acceleration {
 /// use std::sync::Arc;
 ///
 /// use contactsense::robot::Robot;
-/// use contactsense::sensor::{Convention, ForceTorqueSensor, LoadCompensator};
-/// use contactsense::spatial::Pose;
+/// use contactsense::sensor::{ForceTorqueSensor, LoadCompensator};
 ///
 /// let robot = Arc::new(Robot::example_arm());
-/// let sensor = ForceTorqueSensor {
-///     name: "wrist".into(),
-///     link: "link_7".into(),
-///     pose: Pose::identity(),
-///     convention: Convention::Load,
-/// };
+/// let sensor = ForceTorqueSensor::new("wrist", "link_7");
 /// let mut compensator = LoadCompensator::new(robot, &[sensor])?;
 /// let still = [0.0; 7];
 /// // The arm stands upright: the sensor carries the 2 kg behind it, and somebody pulls at it with 5 N.
@@ -210,10 +206,15 @@ impl LoadCompensator {
 
     /// `F_ext,S = F_S + F_c,S` (eq. 19).
     fn external_wrench(&self, kinematics: &Kinematics, sensor: usize, reading: &[f64; 6]) -> Vector6<f64> {
-        let at = self.tree.position(kinematics, sensor);
-        let Load { force, moment } = &self.loads[sensor];
+        let [force, moment] = self.load_at(kinematics, sensor);
         let [read_force, read_moment] = self.tree.exerted(kinematics, sensor, reading);
-        stack(&(read_force + force), &(read_moment + moment - at.cross(force)))
+        stack(&(read_force + force), &(read_moment + moment))
+    }
+
+    /// `F_c,S`: what holds and accelerates all behind a sensor, about its origin, world axes.
+    fn load_at(&self, kinematics: &Kinematics, sensor: usize) -> [Vector3<f64>; 2] {
+        let Load { force, moment } = &self.loads[sensor];
+        [*force, moment - self.tree.position(kinematics, sensor).cross(force)]
     }
 }
 
@@ -222,6 +223,11 @@ pub(crate) fn check_readings(tree: &SensorTree, wrenches: &[Option<[f64; 6]>]) -
     if wrenches.len() != tree.len() {
         return Err(wrong_count(tree, wrenches.len()));
     }
+    check_numbers(tree, wrenches)
+}
+
+/// The numbers of one reading a sensor, or none.
+fn check_numbers(tree: &SensorTree, wrenches: &[Option<[f64; 6]>]) -> Result<()> {
     for (row, reading) in wrenches.iter().enumerate() {
         if reading.iter().flatten().any(|x| x.is_nan() || x.abs() >= LARGEST) {
             return Err(too_large(tree, row));

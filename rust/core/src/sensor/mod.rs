@@ -3,9 +3,11 @@
 pub(crate) mod distal_parts;
 mod exclusion;
 mod force_torque_sensor;
+mod gravity_span;
 mod ids;
 mod load_compensator;
 mod sensor_tree;
+mod tool_load;
 
 pub(crate) use exclusion::sensor_torque;
 pub use force_torque_sensor::{Convention, ForceTorqueSensor};
@@ -14,3 +16,4 @@ pub(crate) use load_compensator::check_readings;
 pub use load_compensator::LoadCompensator;
 pub(crate) use sensor_tree::SensorTree;
 pub use sensor_tree::JOINT_TORQUES;
+pub use tool_load::{identify_tool, ToolLoad};

@@ -5,7 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 use super::force_torque_sensor::ForceTorqueSensor;
 use crate::error::{Error, Result};
 use crate::robot::ancestry::Ancestry;
-use crate::robot::{Kinematics, Robot, WORLD};
+use crate::robot::{Kinematics, Robot, LARGEST, WORLD};
+use crate::spatial::vector::split;
 use crate::spatial::Pose;
 
 /// What a contact's source is called that no sensor saw.
@@ -47,7 +48,7 @@ impl SensorTree {
     ///
     /// # Errors
     /// [`Error::Input`] for a link that does not exist or that nothing movable carries, two sensors of one name or on
-    /// one link, and a pose that is not rigid.
+    /// one link, a pose that is not rigid, and an offset that is not finite.
     pub fn new(robot: &Robot, sensors: &[ForceTorqueSensor]) -> Result<Self> {
         let mut at_link = vec![None; robot.links().len()];
         let mut mounts = Vec::with_capacity(sensors.len());
@@ -258,9 +259,19 @@ impl SensorTree {
         sensor: usize,
         reading: &[f64; 6],
     ) -> [Vector3<f64>; 2] {
-        let turn = self.rotation(kinematics, sensor) * self.sensors[sensor].convention.sign();
-        let [fx, fy, fz, mx, my, mz] = *reading;
-        [turn * Vector3::new(fx, fy, fz), turn * Vector3::new(mx, my, mz)]
+        let turn = self.rotation(kinematics, sensor);
+        let (force, moment) = split(&self.sensors[sensor].exerted(reading));
+        [turn * force, turn * moment]
+    }
+
+    /// The sensors, in the order given, with their present offsets.
+    pub(crate) fn sensors(&self) -> &[ForceTorqueSensor] {
+        &self.sensors
+    }
+
+    /// Another offset of a sensor, which must be finite.
+    pub(crate) fn set_offset(&mut self, sensor: usize, offset: [f64; 6]) {
+        self.sensors[sensor].offset = offset;
     }
 }
 
@@ -291,6 +302,9 @@ fn mount(robot: &Robot, sensor: &ForceTorqueSensor) -> Result<Mount> {
     }
     let rigid = sensor.pose.check_rigid();
     rigid.map_err(|why| Error::input("sensors", format!("the pose of '{name}' {why}")))?;
+    if !sensor.offset.iter().all(|x| x.abs() < LARGEST) {
+        return Err(Error::input("sensors", format!("the offset of '{name}' must be finite [N, Nm]")));
+    }
     Ok(Mount { link: index, body: link.body, placement: link.placement.compose(&sensor.pose), parent: None })
 }
 

@@ -8,7 +8,6 @@ use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
 use contactsense::particle::{FilterOptions, ForceModel};
 use contactsense::robot::{Robot, RobotDescription};
 use contactsense::sensor::{Convention, ForceTorqueSensor};
-use contactsense::spatial::Pose;
 use contactsense::Sample;
 use nalgebra::Vector3;
 use serde::de::DeserializeOwned;
@@ -22,10 +21,9 @@ fn there_and_back<T: Serialize + DeserializeOwned>(data: &T) -> T {
 
 fn wrist() -> ForceTorqueSensor {
     ForceTorqueSensor {
-        name: "wrist".into(),
-        link: "link_6".into(),
-        pose: Pose::identity(),
         convention: Convention::Support,
+        offset: [1.0, 0.0, -2.0, 0.0, 0.1, 0.0],
+        ..ForceTorqueSensor::new("wrist", "link_6")
     }
 }
 

@@ -5,7 +5,6 @@ use contactsense::isolation::{ContactIsolator, ContactPlace, IsolatorOptions};
 use contactsense::monitor::{ContactMonitor, MonitorOptions};
 use contactsense::observer::MomentumObserver;
 use contactsense::sensor::{Convention, ForceTorqueSensor, SensorIndex};
-use contactsense::spatial::Pose;
 use contactsense::{Error, Sample};
 use proptest::prelude::*;
 
@@ -118,10 +117,8 @@ proptest! {
         let robot = common::arm();
         let q = common::configuration(&robot, 0.2);
         let sensor = |name: &str| ForceTorqueSensor {
-            name: name.into(),
-            link: name.into(),
-            pose: Pose::identity(),
             convention: Convention::Support,
+            ..ForceTorqueSensor::new(name, name)
         };
         let mut options = options();
         options.isolation.sensors = vec![sensor("arm_2"), sensor("arm_5")];

@@ -1,6 +1,6 @@
 use nalgebra::{Matrix3, Vector3};
 
-use super::super::{Convention, ForceTorqueSensor, SensorTree};
+use super::super::{ForceTorqueSensor, SensorTree};
 use crate::robot::{test_tree, JointDescription, Kinematics, LinkDescription, Robot};
 use crate::spatial::Pose;
 use crate::Error;
@@ -25,7 +25,7 @@ fn robot() -> Robot {
 }
 
 fn sensor(name: &str, link: &str) -> ForceTorqueSensor {
-    ForceTorqueSensor { name: name.into(), link: link.into(), pose: at(0.1), convention: Convention::Load }
+    ForceTorqueSensor { pose: at(0.1), ..ForceTorqueSensor::new(name, link) }
 }
 
 #[test]
@@ -56,6 +56,7 @@ fn loads_pass_on_towards_the_base() {
 fn bad_sensors_are_named() {
     let skewed = Pose { rotation: Matrix3::identity() * 2.0, translation: Vector3::zeros() };
     let far = Pose { rotation: Matrix3::identity(), translation: Vector3::repeat(f64::NAN) };
+    let endless = [0.0, 0.0, f64::INFINITY, 0.0, 0.0, 0.0];
     let cases = [
         (vec![sensor("A", "x")], "'x'"),
         (vec![sensor("A", "base")], "fixed to the world"),
@@ -63,6 +64,7 @@ fn bad_sensors_are_named() {
         (vec![sensor("A", "a"), sensor("B", "a")], "both sit at link 'a'"),
         (vec![ForceTorqueSensor { pose: skewed, ..sensor("A", "a") }], "the pose of 'A' must be a rotation"),
         (vec![ForceTorqueSensor { pose: far, ..sensor("A", "a") }], "the pose of 'A' is not finite"),
+        (vec![ForceTorqueSensor { offset: endless, ..sensor("A", "a") }], "the offset of 'A' must be finite"),
     ];
     for (sensors, part) in cases {
         match SensorTree::new(&robot(), &sensors) {
