@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::friction_errors::FrictionErrors;
+use super::payload_errors::{Load, PayloadErrors};
 use super::slow_errors::SlowErrors;
 use super::velocity_covariance::VelocityCovariance;
 use super::whitening::Whitening;
@@ -55,7 +56,13 @@ impl Signal {
     }
 
     #[inline]
-    fn set_covariance(&mut self, velocity: &VelocityCovariance, slow: &SlowErrors, friction: &FrictionErrors) {
+    fn set_covariance(
+        &mut self,
+        velocity: &VelocityCovariance,
+        slow: &SlowErrors,
+        friction: &FrictionErrors,
+        payload: &PayloadErrors,
+    ) {
         let Signal { whitening, .. } = self;
         let (torque, root, model, of_friction) = (&self.torque, &self.velocity, &self.model, &self.friction);
         let shares = friction.shares();
@@ -64,6 +71,9 @@ impl Signal {
                 *value = product * root[i] * other;
             }
             row[i] += torque[i] + slow.variance(i, model[i]) + of_friction[i] * shares[i];
+            if payload.any() {
+                payload.add_to_row(i, row);
+            }
         });
     }
 }
@@ -90,6 +100,7 @@ pub(crate) struct ContactTest {
     velocity: VelocityCovariance,
     slow: SlowErrors,
     friction: FrictionErrors,
+    payload: PayloadErrors,
     /// The signal whose covariance is next.
     next: usize,
     started: bool,
@@ -120,6 +131,7 @@ impl ContactTest {
             velocity: VelocityCovariance::new(&robot, &variances.velocity),
             slow: SlowErrors::new(variances.slow.clone(), follow_time),
             friction: FrictionErrors::new(nv),
+            payload: PayloadErrors::new(nv),
             next: 0,
             started: false,
             without_bias: vec![0.0; nv],
@@ -152,10 +164,11 @@ impl ContactTest {
         }
         self.velocity.advance(&self.robot, observer.kinematics());
         self.friction.advance(observer.velocity(), step.length(self.dt));
+        self.payload.advance(&self.robot, observer.kinematics(), step.length(self.dt));
         let all = 0..self.signals.len();
         let due = if self.started { self.next..self.next + 1 } else { all };
         for signal in &mut self.signals[due] {
-            signal.set_covariance(&self.velocity, &self.slow, &self.friction);
+            signal.set_covariance(&self.velocity, &self.slow, &self.friction, &self.payload);
         }
         self.next = (self.next + 1) % self.signals.len();
         self.started = true;
@@ -195,12 +208,20 @@ impl ContactTest {
     /// [`ContactTest::evaluate`].
     #[inline]
     pub fn follow(&mut self, torque: &[f64], dt: f64, touched: bool) {
-        if touched {
+        if touched || self.payload.settling() {
             self.slow.lose(dt);
         } else {
             let torque = self.bank.as_ref().map_or(torque, |bank| &bank.torques()[0]);
             self.slow.follow(torque, dt);
         }
+    }
+
+    /// Another robot from now on, of other inertias only: loads are taken away and added.
+    pub fn set_robot(&mut self, robot: &Arc<Robot>, loads: [Option<Load>; 2]) {
+        self.robot = Arc::clone(robot);
+        self.payload.change(loads);
+        // All covariances hold the change at once.
+        self.started = false;
     }
 
     /// The torque that slow errors are followed by, `torque` without a bank.
@@ -259,6 +280,7 @@ impl ContactTest {
         self.velocity.reset();
         self.slow.reset();
         self.friction.reset();
+        self.payload.reset();
         self.joints.fill(0.0);
         (self.next, self.started, self.suspicious) = (0, false, false);
     }
