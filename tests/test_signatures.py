@@ -54,6 +54,9 @@ SIGNATURES = {
     "bias_settle_time=None, hysteresis=0.2, hold_time=0.02, max_contacts=5, pushing=True, "
     "calibration=None, locate_within=0.05",
     "ContactMonitor.update": "q, v, tau, wrenches=None, *, dt=None, friction=None",
+    "ContactMonitor.update_external": "q, tau_ext, wrenches=None, *, v=None, dt=None",
+    "ContactMonitor.set_payload": "link, mass, com",
+    "ContactMonitor.clear_payload": "",
     "ContactMonitor.reset": "",
     "ContactParticleFilter": "robot, *, particles=10_000, motion='curvature', measurement='normal', "
     "friction=0.5, "

@@ -1623,11 +1623,73 @@ class ContactMonitor:
         Raises:
             InputError: Names the argument; the state is then unchanged but for the time that passed.
         """
+    def update_external(
+        self,
+        q: ArrayLike,
+        tau_ext: ArrayLike,
+        wrenches: ArrayLike | None = None,
+        *,
+        v: ArrayLike | None = None,
+        dt: float | None = None,
+    ) -> ContactReport:
+        """Takes in one tick with an external torque that the robot's controller estimates, as those of Franka, KUKA and Doosan do.
+
+        It takes the place of the observer's: masses and friction of the model do not matter, and `observer_gain` filters
+        nothing. With a `calibration` of such torques (`torque_is_external`) all joints are tested at once. A monitor takes
+        torques of one source: `update` after `update_external`, or the other way round, is refused until `reset()`.
+
+        Args:
+            q: Configuration, `(nq,)`.
+            tau_ext: External torque of forces on the robot, `(nv,)` [Nm; N for sliding joints].
+            wrenches: The sensors' readings, as in `update`.
+            v: Velocity, `(nv,)` [rad/s; m/s for sliding joints]; None: not known, and taken to be slow. It says where friction is
+                uncertain, and what inertia does to the sensors.
+            dt: Time since the last accepted sample [s], as in `update`; the torque after a gap is known at once.
+
+        Returns:
+            What the monitor says of this tick: `external_torque` is `tau_ext` less its bias, `acceleration` NaN.
+
+        Raises:
+            InputError: Names the argument; the state is then unchanged but for the time that passed.
+        """
+    def set_payload(self, link: str, mass: float, com: ArrayLike) -> None:
+        """Says what the robot carries from the next tick on.
+
+        The payload takes the place of one that was set before; what the description or a calibration has stays, and so does
+        the payload over `reset()`. External torque, bias and contacts go on. Call it at the tick at which the robot bears the
+        weight. Where all joints are tested at once (`calibration`), that may be up to half a second later: for so long the
+        weight counts as unknown, and a contact with the same torques is not seen. A weight that is borne before it is set
+        is an external torque. Not for the control loop: it allocates.
+
+        Args:
+            link: Name of the link that holds it.
+            mass: Mass [kg].
+            com: Centre of mass in the link's frame, `(3,)` [m].
+
+        Raises:
+            InputError: Names the argument; nothing is then changed.
+
+        Example:
+            >>> import contactsense as cs
+            >>> robot = cs.Robot.named("iiwa14")
+            >>> monitor = cs.ContactMonitor(robot, dt=1e-3)
+            >>> monitor.set_payload("iiwa_link_7", 1.5, [0.0, 0.0, 0.1])
+            >>> round(monitor.robot.mass - robot.mass, 6)
+            1.5
+            >>> monitor.clear_payload()
+            >>> monitor.robot.mass == robot.mass
+            True
+        """
+    def clear_payload(self) -> None:
+        """Says that the robot carries nothing from the next tick on but what its description or calibration has.
+
+        As `set_payload`. Not for the control loop: it frees memory.
+        """
     def reset(self) -> None:
-        """Forgets all ticks, the bias too."""
+        """Forgets all ticks, the bias too; torques may then come from another source. A payload stays."""
     @property
     def robot(self) -> Robot:
-        """The robot that is monitored."""
+        """The robot that is monitored, with the payload that was set."""
     @property
     def dt(self) -> float:
         """Time between two calls that is assumed where `update` is given none [s]."""
@@ -1707,7 +1769,10 @@ class ContactReport:
         """
     @property
     def acceleration(self) -> NDArray[np.float64]:
-        """Estimated acceleration, `(nv,)` [rad/s^2; m/s^2 for sliding joints]; read-only."""
+        """Estimated acceleration, `(nv,)` [rad/s^2; m/s^2 for sliding joints]; read-only.
+
+        NaN after `update_external`: the motors' torque is not known there.
+        """
     @property
     def contacts(self) -> tuple[Contact, ...]:
         """The contacts; empty while there is no collision. The same tuple at every access."""

@@ -28,5 +28,5 @@ mod torque;
 
 pub use error::{Error, Result};
 pub use nalgebra;
-pub use sample::Sample;
+pub use sample::{ExternalSample, Sample};
 pub use torque::NoiseModel;

@@ -79,6 +79,67 @@ impl<'a> Sample<'a> {
     }
 }
 
+/// What is measured at one instant where the robot's controller estimates the external torque itself: the argument of
+/// [`ContactMonitor::update_external`](crate::monitor::ContactMonitor::update_external).
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::monitor::{ContactMonitor, MonitorOptions};
+/// use contactsense::robot::Robot;
+/// use contactsense::ExternalSample;
+///
+/// let mut monitor = ContactMonitor::new(Arc::new(Robot::example_arm()), &MonitorOptions::new(1e-3))?;
+/// let (q, v, tau_ext) = ([0.0; 7], [0.1; 7], [0.2; 7]);
+/// let report = monitor.update_external(&ExternalSample::new(&q, &tau_ext).velocity(&v).dt(1.2e-3))?;
+/// assert_eq!(report.external_torque, tau_ext);
+/// # Ok::<(), contactsense::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExternalSample<'a> {
+    pub(crate) q: &'a [f64],
+    pub(crate) tau_ext: &'a [f64],
+    pub(crate) v: Option<&'a [f64]>,
+    pub(crate) wrenches: &'a [Option<[f64; 6]>],
+    pub(crate) dt: Option<f64>,
+}
+
+impl<'a> ExternalSample<'a> {
+    /// The configuration `q` `(nq,)` and the external torque `tau_ext` `(nv,)`: that of forces on the robot, not on the world.
+    pub fn new(q: &'a [f64], tau_ext: &'a [f64]) -> Self {
+        ExternalSample { q, tau_ext, v: None, wrenches: &[], dt: None }
+    }
+
+    /// With the velocity `(nv,)`, where it is known: a robot without one is taken to move slowly.
+    #[must_use]
+    pub fn velocity(self, v: &'a [f64]) -> Self {
+        ExternalSample { v: Some(v), ..self }
+    }
+
+    /// As [`Sample::wrenches`].
+    #[must_use]
+    pub fn wrenches(self, wrenches: &'a [Option<[f64; 6]>]) -> Self {
+        ExternalSample { wrenches, ..self }
+    }
+
+    /// As [`Sample::dt`].
+    #[must_use]
+    pub fn dt(self, dt: f64) -> Self {
+        ExternalSample { dt: Some(dt), ..self }
+    }
+
+    /// As [`Sample::check`].
+    #[inline]
+    pub(crate) fn check(&self, robot: &Robot) -> Result<()> {
+        if let Some(dt) = self.dt {
+            check_time_step(dt)?;
+        }
+        robot.check_configuration(self.q)?;
+        robot.check_tangent("tau_ext", self.tau_ext)?;
+        self.v.map_or(Ok(()), |v| robot.check_tangent("v", v))
+    }
+}
+
 /// Refuses what cannot be the time from one sample to the next (s).
 pub(crate) fn check_time_step(dt: f64) -> Result<()> {
     if TIME_STEPS.contains(&dt) {

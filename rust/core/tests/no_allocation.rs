@@ -12,7 +12,7 @@ use contactsense::observer::MomentumObserver;
 use contactsense::particle::{ContactParticleFilter, FilterOptions};
 use contactsense::robot::Robot;
 use contactsense::sensor::{ForceTorqueSensor, LoadCompensator};
-use contactsense::Sample;
+use contactsense::{ExternalSample, Sample};
 use nalgebra::Vector3;
 
 mod common;
@@ -194,6 +194,25 @@ fn a_tick_allocates_nothing() {
         assert_eq!((contact, free), (0, 0), "monitor of {}, all joints tested at once", robot.name());
         assert!(tested.report().significance.is_some());
         assert!(seen > 30, "the monitor saw the contact: {seen}");
+
+        let mut given = Calibration::of_description(&robot);
+        given.torque_is_external = true;
+        let thresholds = MonitorOptions { bias_time_constant: Some(0.02), ..MonitorOptions::new(1e-3) };
+        let isolation = IsolatorOptions { torque_threshold: None, ..thresholds.isolation.clone() };
+        let tested =
+            MonitorOptions { calibration: Some(given), isolation, ..MonitorOptions::new(1e-3) };
+        for options in [thresholds, tested] {
+            let mut monitor = ContactMonitor::new(robot.clone(), &options).expect("valid options");
+            let work = || {
+                for k in 0..120 {
+                    let torque = if k / 40 == 1 { &torques[0] } else { &still };
+                    let sample = ExternalSample::new(&q, torque);
+                    let sample = [sample, sample.velocity(&v), sample.dt(1.0)][k % 3];
+                    black_box(monitor.update_external(&sample).expect("valid input"));
+                }
+            };
+            assert_eq!(allocations(work), 0, "monitor of {} with external torques", robot.name());
+        }
 
         let sensors = sensors_of(&robot);
         let readings = vec![Some([1.0, -2.0, 3.0, 0.1, 0.2, -0.3]); sensors.len()];

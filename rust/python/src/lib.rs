@@ -19,6 +19,8 @@ mod estimate;
 mod filter_options;
 mod isolator;
 mod monitor;
+mod monitor_external;
+mod monitor_payload;
 mod motion;
 mod names;
 mod noise;

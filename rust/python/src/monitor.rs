@@ -1,6 +1,6 @@
 //! `ContactMonitor`.
 
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use contactsense::monitor::{ContactMonitor, MonitorOptions};
 use contactsense::sensor::ForceTorqueSensor;
@@ -70,15 +70,22 @@ use crate::sensor::{sensor_names, sensor_tuple, sensors, wrench_thresholds};
 ///     >>> monitor.torque_threshold = 5.0
 #[pyclass(frozen, name = "ContactMonitor", module = "contactsense")]
 pub struct PyContactMonitor {
-    robot: Py<PyRobot>,
+    pub(crate) unloaded: Py<PyRobot>,
+    /// The same with its payload.
+    robot: Mutex<Py<PyRobot>>,
     monitor: Mutex<ContactMonitor>,
-    names: Arc<Names>,
+    pub(crate) names: Arc<Names>,
     sensors: Vec<ForceTorqueSensor>,
 }
 
 impl PyContactMonitor {
-    fn sole(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, ContactMonitor>> {
+    pub(crate) fn sole(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, ContactMonitor>> {
         sole(py, "ContactMonitor", &self.monitor)
+    }
+
+    /// What `robot` returns from now on.
+    pub(crate) fn set_robot(&self, robot: Py<PyRobot>) {
+        *self.robot.lock().unwrap_or_else(PoisonError::into_inner) = robot;
     }
 }
 
@@ -155,7 +162,8 @@ impl PyContactMonitor {
         let monitor = monitor.map_err(|error| to_python(robot.py(), error))?;
         let names = Names::new(&robot.get().0, monitor.sensor_names());
         let sensors = options.isolation.sensors;
-        Ok(Self { robot: robot.unbind(), names, sensors, monitor: Mutex::new(monitor) })
+        let loaded = Mutex::new(robot.clone().unbind());
+        Ok(Self { unloaded: robot.unbind(), robot: loaded, names, sensors, monitor: Mutex::new(monitor) })
     }
 
     /// Takes in one tick.
@@ -221,10 +229,10 @@ impl PyContactMonitor {
         Ok(PyContactReport::new(self.names.clone(), report, acceleration))
     }
 
-    /// The robot that is monitored.
+    /// The robot that is monitored, with the payload that was set.
     #[getter]
     fn robot(&self, py: Python<'_>) -> Py<PyRobot> {
-        self.robot.clone_ref(py)
+        self.robot.lock().unwrap_or_else(PoisonError::into_inner).clone_ref(py)
     }
 
     /// Time between two calls that is assumed where `update` is given none [s].
@@ -308,7 +316,7 @@ impl PyContactMonitor {
         self.sole(py)?.set_wrench_gain(gain).map_err(|error| to_python(py, error))
     }
 
-    /// Forgets all ticks, the bias too.
+    /// Forgets all ticks, the bias too; torques may then come from another source. A payload stays.
     fn reset(&self, py: Python<'_>) -> PyResult<()> {
         self.sole(py)?.reset();
         Ok(())

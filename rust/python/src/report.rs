@@ -147,6 +147,8 @@ impl PyContactReport {
     }
 
     /// Estimated acceleration, `(nv,)` [rad/s^2; m/s^2 for sliding joints]; read-only.
+    ///
+    /// NaN after `update_external`: the motors' torque is not known there.
     #[getter]
     fn acceleration<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.arrays.acceleration.get(py, || Ok(numbers(py, &self.acceleration)))

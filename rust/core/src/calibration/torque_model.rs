@@ -152,6 +152,16 @@ impl TorqueModel {
     }
 }
 
+impl TorqueModel {
+    /// Corrects external torques `(nv,)` of a vendor in place, which contain neither friction nor delays of ours.
+    #[inline]
+    pub fn correct_external(&self, tau_ext: &mut [f64]) {
+        for (joint, tau) in self.joints.iter().zip(tau_ext) {
+            *tau = joint.scale * *tau - joint.bias;
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

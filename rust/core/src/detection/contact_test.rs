@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::friction_errors::FrictionErrors;
+use super::payload_errors::{Load, PayloadErrors};
 use super::slow_errors::SlowErrors;
 use super::velocity_covariance::VelocityCovariance;
 use super::whitening::Whitening;
@@ -61,6 +62,7 @@ impl Signal {
         velocity: &VelocityCovariance,
         slow: &SlowErrors,
         friction: &FrictionErrors,
+        payload: &PayloadErrors,
     ) -> bool {
         let Signal { whitening, .. } = self;
         let (torque, root, model, of_friction) = (&self.torque, &self.velocity, &self.model, &self.friction);
@@ -70,6 +72,9 @@ impl Signal {
                 *value = product * root[i] * other;
             }
             row[i] += torque[i] + slow.variance(i, model[i]) + of_friction[i] * shares[i];
+            if payload.any() {
+                payload.add_to_row(i, row);
+            }
         })
     }
 }
@@ -96,6 +101,7 @@ pub(crate) struct ContactTest {
     velocity: VelocityCovariance,
     slow: SlowErrors,
     friction: FrictionErrors,
+    payload: PayloadErrors,
     /// The signal whose covariance is next.
     next: usize,
     started: bool,
@@ -125,6 +131,7 @@ impl ContactTest {
             velocity: VelocityCovariance::new(&robot, &variances.velocity),
             slow: SlowErrors::new(variances.slow.clone(), follow_time),
             friction: FrictionErrors::new(nv),
+            payload: PayloadErrors::new(nv),
             next: 0,
             started: false,
             without_bias: vec![0.0; nv],
@@ -158,13 +165,14 @@ impl ContactTest {
         }
         self.velocity.advance(&self.robot, kinematics);
         self.friction.advance(v, step.length(self.dt));
-        let Self { signals, velocity, slow, friction, .. } = self;
+        self.payload.advance(&self.robot, kinematics, step.length(self.dt));
+        let Self { signals, velocity, slow, friction, payload, .. } = self;
         if self.started {
-            if signals[self.next].whiten(velocity, slow, friction) {
+            if signals[self.next].whiten(velocity, slow, friction, payload) {
                 self.next = (self.next + 1) % signals.len();
             }
         } else {
-            signals.iter_mut().for_each(|signal| _ = signal.whiten(velocity, slow, friction));
+            signals.iter_mut().for_each(|signal| _ = signal.whiten(velocity, slow, friction, payload));
         }
         self.started = true;
     }
@@ -205,11 +213,19 @@ impl ContactTest {
     #[inline]
     pub fn follow(&mut self, torque: &[f64], dt: f64, touched: bool) {
         let torque = self.bank.as_ref().map_or(torque, |bank| &bank.torques()[0]);
-        if touched {
+        if touched || self.payload.settling() {
             self.slow.lose(torque, dt);
         } else {
             self.slow.follow(torque, dt);
         }
+    }
+
+    /// Another robot from now on, of other inertias only: loads are taken away and added.
+    pub fn set_robot(&mut self, robot: &Arc<Robot>, loads: [Option<Load>; 2]) {
+        self.robot = Arc::clone(robot);
+        self.payload.change(loads);
+        // All covariances hold the change at once.
+        self.started = false;
     }
 
     /// The torque that slow errors are followed by, `torque` without a bank.
@@ -271,6 +287,7 @@ impl ContactTest {
         self.velocity.reset();
         self.slow.reset();
         self.friction.reset();
+        self.payload.reset();
         self.joints.fill(0.0);
         (self.next, self.started, self.suspicious) = (0, false, false);
     }

@@ -7,7 +7,8 @@ use super::clock::SampleClock;
 use super::options::MonitorOptions;
 use super::report::ContactReport;
 use super::sensing::Sensing;
-use crate::detection::{ContactTest, Detector, ReleaseDetector};
+use super::source::{signal_of, Source};
+use crate::detection::{ContactTest, Detector, Load, ReleaseDetector};
 use crate::error::{Error, Result};
 use crate::isolation::ContactIsolator;
 use crate::observer::{MomentumObserver, Step};
@@ -43,7 +44,12 @@ use crate::sensor::{SensorIndex, SensorTree};
 #[derive(Debug, Clone)]
 pub struct ContactMonitor {
     pub(super) robot: Arc<Robot>,
+    /// The same without the payload.
+    pub(super) unloaded: Arc<Robot>,
+    pub(super) payload: Option<Load>,
     pub(super) clock: SampleClock,
+    /// Of the torques since the first accepted call.
+    pub(super) source: Option<Source>,
     pub(super) observer: MomentumObserver,
     pub(super) bias: Option<BiasTracker>,
     /// Of all joints at once, with a bias of its own; none where each joint has a threshold.
@@ -74,8 +80,10 @@ impl ContactMonitor {
         let observer = observer.map_err(of_observer)?;
         let robot = Arc::clone(observer.robot());
         let has_wanted = !options.isolation.wanted_contacts.is_empty();
-        let test = options.contact_test(&robot, observer.gain(), has_wanted)?;
-        let options = &options.with_calibrated_noise(&robot, observer.gain())?;
+        let (signal, gain) = signal_of(options, observer.gain());
+        let of_test = if has_wanted { &signal } else { options };
+        let test = of_test.contact_test(&robot, &gain, has_wanted)?;
+        let options = &signal.with_calibrated_noise(&robot, &gain)?;
         let tree = SensorTree::new(&robot, &options.isolation.sensors)?;
         let (threshold, _) = options.isolation.threshold_and_noise(&robot)?;
         let detector = Detector::new(
@@ -102,6 +110,7 @@ impl ContactMonitor {
         let sensors = options.isolation.sensors.len();
         let mut monitor = Self {
             clock: SampleClock::new(options.dt),
+            source: None,
             observer,
             detector,
             release,
@@ -121,6 +130,8 @@ impl ContactMonitor {
             },
             isolator,
             options: options.clone(),
+            unloaded: Arc::clone(&robot),
+            payload: None,
             robot,
         };
         monitor.finish_report();
@@ -140,21 +151,37 @@ impl ContactMonitor {
             self.miss(sample.dt);
             return Err(error);
         }
-        let first = !self.clock.started();
+        self.source = Some(Source::Motors);
         let step = self.clock.step(sample.dt);
-        let length = step.length(self.clock.dt());
-        let external_torque = self.observer.advance(sample, step);
+        let new = self.clock.started() && !step.is_gap();
+        self.observer.advance(sample, step);
         self.clock.accept(sample.dt);
+        self.sense(sample.wrenches, step);
+        Ok(self.judge(step, new))
+    }
+
+    /// What torque and sensors say of contacts, after a step of the observer.
+    pub(super) fn sense(&mut self, wrenches: &[Option<[f64; 6]>], step: Step) {
+        let external_torque = self.observer.external_torque();
         self.report.external_torque.copy_from_slice(external_torque);
         self.report.collision_torque.copy_from_slice(external_torque);
         if let Some(sensing) = &mut self.sensing {
             let (threshold, dt) = (&self.threshold, self.clock.dt());
-            sensing.update(&self.observer, sample.wrenches, threshold, step, dt);
-            let collision_torque = self.report.collision_torque.iter_mut();
+            sensing.update(&self.observer, wrenches, threshold, step, dt);
+            let collision_torque = &mut self.report.collision_torque;
+            if self.source == Some(Source::External) && sensing.has_wanted() {
+                // The sensors' wrenches are means of a step.
+                collision_torque.copy_from_slice(self.observer.unexplained().unwrap_or(external_torque));
+            }
+            let collision_torque = collision_torque.iter_mut();
             collision_torque.zip(sensing.wanted_torque()).for_each(|(torque, wanted)| *torque -= wanted);
         }
+    }
+
+    /// Bias, detection and isolation of what was sensed; `new` is false where the step brought no new torque.
+    pub(super) fn judge(&mut self, step: Step, new: bool) -> &ContactReport {
+        let length = step.length(self.clock.dt());
         let felt = self.detector.sense(self.sensing.as_ref().map_or(&[], Sensing::unwanted));
-        let new = !first && !step.is_gap();
         if self.test.is_some() {
             self.test_all_joints(step, new, felt);
         } else if self.remove_bias(length, new, felt) {
@@ -166,7 +193,7 @@ impl ContactMonitor {
             self.report.isolation.clear();
         }
         self.finish_report();
-        Ok(&self.report)
+        &self.report
     }
 
     /// A tick whose sample never came to [`ContactMonitor::update`], `dt` (s) after the last that was accepted if that is
@@ -191,14 +218,19 @@ impl ContactMonitor {
     }
 
     fn check(&self, sample: &Sample<'_>) -> Result<()> {
-        match &self.sensing {
-            Some(sensing) => sensing.check_readings(sample.wrenches)?,
-            None if !sample.wrenches.is_empty() => {
-                return Err(Error::input("wrenches", "the monitor was made without sensors"));
-            }
-            None => {}
-        }
+        self.check_source(Source::Motors)?;
+        self.check_readings(sample.wrenches)?;
         sample.check(&self.robot)
+    }
+
+    pub(super) fn check_readings(&self, wrenches: &[Option<[f64; 6]>]) -> Result<()> {
+        match &self.sensing {
+            Some(sensing) => sensing.check_readings(wrenches),
+            None if !wrenches.is_empty() => {
+                Err(Error::input("wrenches", "the monitor was made without sensors"))
+            }
+            None => Ok(()),
+        }
     }
 
     /// Tests all joints at once, and subtracts the bias that the test follows; `new` and `felt` as in
@@ -305,8 +337,9 @@ impl ContactMonitor {
         }
     }
 
-    /// Forgets all ticks, the bias too.
+    /// Forgets all ticks, the bias and the source of the torques too; the robot keeps its payload.
     pub fn reset(&mut self) {
+        self.forget_source();
         self.observer.reset();
         self.detector.reset();
         self.report.isolation.clear();
@@ -349,7 +382,7 @@ impl ContactMonitor {
         self.sensing.as_ref().map_or(&[], |sensing| sensing.tree().names())
     }
 
-    /// The robot watched.
+    /// The robot watched, with its payload.
     pub fn robot(&self) -> &Arc<Robot> {
         &self.robot
     }

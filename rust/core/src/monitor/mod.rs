@@ -3,10 +3,13 @@
 mod bias;
 mod clock;
 mod contact_monitor;
+mod external;
 mod options;
+mod payload;
 mod report;
 mod sensing;
 mod settings;
+mod source;
 
 pub use contact_monitor::ContactMonitor;
 pub use options::MonitorOptions;

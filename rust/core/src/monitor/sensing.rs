@@ -78,6 +78,24 @@ impl Sensing {
         Ok(())
     }
 
+    /// As [`WrenchObserver::set_robot`].
+    pub fn set_robot(&mut self, robot: &Arc<Robot>) {
+        self.wrenches.set_robot(robot, &self.tree);
+    }
+
+    /// The wanted contacts' torque is that of an observer of this gain `(nv,)` from the next step on; the wrenches' low-pass
+    /// stays.
+    pub fn follow_gain(&mut self, gain: &[f64]) {
+        self.wrenches.set_torque_gain(|k| gain[k]);
+        self.settling_time = settling_time(gain);
+    }
+
+    /// The same for an external torque that comes without an observer's lag.
+    pub fn follow_without_lag(&mut self) {
+        self.wrenches.set_torque_gain(|_| f64::INFINITY);
+        self.settling_time = 0.0;
+    }
+
     /// A step of nominally `dt` (s), after the observer's, with checked readings and the joints' thresholds `(nv,)`.
     pub fn update(
         &mut self,
@@ -121,6 +139,11 @@ impl Sensing {
     /// Which velocity variables a wanted contact may load that no sensor measures `(nv,)`.
     pub fn blind(&self) -> &[bool] {
         &self.blind
+    }
+
+    /// Whether contacts behind a sensor are wanted.
+    pub fn has_wanted(&self) -> bool {
+        self.wanted.contains(&true)
     }
 
     /// The sensors, those with a reading active.

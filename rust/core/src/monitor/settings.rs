@@ -3,6 +3,7 @@
 use nalgebra::Vector6;
 
 use super::contact_monitor::of_observer;
+use super::source::Source;
 use super::{ContactMonitor, MonitorOptions};
 use crate::detection::check_wrench_threshold;
 use crate::error::{Error, Result};
@@ -104,6 +105,10 @@ impl ContactMonitor {
     fn follow_gains(&mut self) -> Result<()> {
         let Self { sensing, observer, options, .. } = self;
         let Some(sensing) = sensing else { return Ok(()) };
-        sensing.set_gain(observer.gain(), options.wrench_gain)
+        sensing.set_gain(observer.gain(), options.wrench_gain)?;
+        if self.source == Some(Source::External) {
+            sensing.follow_without_lag();
+        }
+        Ok(())
     }
 }

@@ -7,7 +7,7 @@ use crate::calibration::{Calibration, TorqueModel};
 use crate::error::{Error, Result};
 use crate::robot::configuration::spread_torque;
 use crate::robot::{ForwardDynamics, Kinematics, MomentumPass, Robot};
-use crate::sample::{check_time_step, Sample};
+use crate::sample::{check_time_step, ExternalSample, Sample};
 
 /// Estimates the external torque from `q`, `v` and the motors' torque, without acceleration.
 ///
@@ -60,8 +60,10 @@ pub struct MomentumObserver {
     acceleration: Vec<f64>,
     acceleration_is_current: bool,
     started: bool,
-    /// Whether the last step was integrated: neither the first nor one over a gap.
+    /// Whether the last step was integrated: neither the first nor one over a gap or a change of the robot.
     integrated: bool,
+    /// The robot changed since the last step.
+    changed: bool,
 }
 
 impl MomentumObserver {
@@ -94,6 +96,7 @@ impl MomentumObserver {
             acceleration_is_current: true,
             started: false,
             integrated: false,
+            changed: false,
             calibration: None,
             robot,
         })
@@ -143,13 +146,35 @@ impl MomentumObserver {
             self.motor_torque[missing..].iter_mut().zip(friction).for_each(|(tau, f)| *tau -= f);
         }
         self.known_rate.iter_mut().zip(&self.motor_torque).for_each(|(rate, tau)| *rate += tau);
-        self.integrated = self.started && !step.is_gap();
+        self.integrated = self.started && !step.is_gap() && !std::mem::take(&mut self.changed);
         if self.integrated {
             self.integrate(step);
         }
         self.started = true;
         self.acceleration_is_current = false;
         &self.external_torque
+    }
+
+    /// A step with a checked external torque that is given: no momentum is observed, and nothing is low-passed. `alone`: the
+    /// torque before is none of this step, the first or one over a gap.
+    pub(crate) fn follow(&mut self, sample: &ExternalSample<'_>, alone: bool) {
+        match sample.v {
+            Some(v) => self.velocity.copy_from_slice(v),
+            None => self.velocity.fill(0.0),
+        }
+        self.kinematics.set_configuration(&self.robot, sample.q);
+        self.kinematics.set_velocity(&self.robot, &self.velocity);
+        self.unexplained.copy_from_slice(&self.external_torque);
+        self.external_torque.copy_from_slice(sample.tau_ext);
+        if let Some(calibration) = &self.calibration {
+            calibration.correct_external(&mut self.external_torque);
+        }
+        for (mean, now) in self.unexplained.iter_mut().zip(&self.external_torque) {
+            *mean = if alone { *now } else { 0.5 * (*mean + now) };
+        }
+        // The motors' torque is not known.
+        self.acceleration.fill(f64::NAN);
+        (self.acceleration_is_current, self.integrated, self.changed) = (true, true, false);
     }
 
     /// `r' = gain (dp/dt - known rate - r)`, exactly over a step on which `dp/dt - known rate` is constant.
@@ -168,7 +193,7 @@ impl MomentumObserver {
         }
     }
 
-    /// The external torque `(nv,)` over the last step as the change of momentum shows it, without low-pass; none before the
+    /// The mean external torque `(nv,)` of the last step as the change of momentum shows it, without low-pass; none before the
     /// second step and over a gap.
     pub(crate) fn unexplained(&self) -> Option<&[f64]> {
         self.integrated.then_some(&self.unexplained[..])
@@ -181,7 +206,7 @@ impl MomentumObserver {
 
     /// Forgets all steps; the next call is a first call.
     pub fn reset(&mut self) {
-        (self.started, self.integrated) = (false, false);
+        (self.started, self.integrated, self.changed) = (false, false, false);
         self.external_torque.fill(0.0);
         self.acceleration.fill(0.0);
         self.acceleration_is_current = true;
@@ -219,6 +244,13 @@ impl MomentumObserver {
         self.gain = check_gain(&self.robot, gain)?;
         self.decay = self.gain.iter().map(|gain| (-gain * self.dt).exp()).collect();
         Ok(())
+    }
+
+    /// Another robot from now on, of other inertias only. The external torque goes on from where it is; the next step, over
+    /// which the momentum jumps, tells nothing of it.
+    pub(crate) fn set_robot(&mut self, robot: &Arc<Robot>) {
+        self.robot = Arc::clone(robot);
+        self.changed = true;
     }
 
     /// The gain `(nv,)` (1/s).

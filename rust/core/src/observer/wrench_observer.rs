@@ -56,6 +56,8 @@ pub(crate) struct WrenchObserver {
     before_gap: Vec<f64>,
     torque: Vec<f64>,
     usable: Vec<bool>,
+    /// The robot changed since the last tick.
+    changed: bool,
 }
 
 impl WrenchObserver {
@@ -95,6 +97,7 @@ impl WrenchObserver {
             before_gap: vec![0.0; gain.len()],
             torque: vec![0.0; gain.len()],
             usable: vec![true; tree.len()],
+            changed: false,
             robot,
         })
     }
@@ -110,6 +113,7 @@ impl WrenchObserver {
         readings: &[Option<[f64; 6]>],
         step: Step,
     ) {
+        let step = if std::mem::take(&mut self.changed) { Step::Gap(step.length(self.dt)) } else { step };
         self.set_step(step.length(self.dt));
         let first = self.reference.is_none();
         let shift = kinematics.origin - *self.reference.get_or_insert(kinematics.origin);
@@ -145,6 +149,20 @@ impl WrenchObserver {
         self.decay_step = f64::NAN;
         self.set_step(self.dt);
         Ok(())
+    }
+
+    /// Another robot from now on, of other inertias only: the next step is as one over a gap.
+    pub fn set_robot(&mut self, robot: &Arc<Robot>, tree: &SensorTree) {
+        self.robot = Arc::clone(robot);
+        self.parts = distal_parts(robot, tree);
+        self.changed = true;
+    }
+
+    /// Another gain of the torques' low-pass by velocity variable (1/s), infinite for none; that of the wrenches stays.
+    pub fn set_torque_gain(&mut self, gain: impl Fn(usize) -> f64) {
+        self.gain.iter_mut().enumerate().for_each(|(k, value)| *value = gain(k));
+        self.decay_step = f64::NAN;
+        self.set_step(self.dt);
     }
 
     /// Of the wrenches' low-pass (1/s); infinite without one.
@@ -252,6 +270,7 @@ impl WrenchObserver {
         self.lagged.iter_mut().for_each(|row| row.fill(0.0));
         self.unobserved.iter_mut().for_each(|row| row.fill(0.0));
         self.usable.fill(true);
+        self.changed = false;
     }
 }
 
