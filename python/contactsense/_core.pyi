@@ -39,6 +39,7 @@ __all__ = [
     "Robot",
     "Surface",
     "SurfaceSamples",
+    "ToolLoad",
     "__version__",
     "_calibrate",
     "_checked_urdf",
@@ -47,6 +48,7 @@ __all__ = [
     "build_profile",
     "diagnose",
     "exciting_motion",
+    "identify_tool",
 ]
 
 __version__: Final[str]
@@ -715,7 +717,10 @@ class ToolLoad:
         """Its centre of mass, `(3,)`, link frame [m]; a read-only copy."""
     @property
     def com_std(self) -> NDArray[np.float64]:
-        """Standard deviation of each coordinate of `com`, `(3,)` [m]; a read-only copy. 0.3 m where the mass is too small to tell."""
+        """Standard deviation of each coordinate of `com`, `(3,)` [m]; a read-only copy.
+
+        It is 0.3 m where the mass is too small to tell.
+        """
     @property
     def offset(self) -> NDArray[np.float64]:
         """What the sensor reads without load, `(6,)` [N, Nm], in its own axes and convention; a read-only copy."""

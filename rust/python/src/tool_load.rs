@@ -58,8 +58,9 @@ impl PyToolLoad {
         numbers(py, &self.0.com)
     }
 
-    /// Standard deviation of each coordinate of `com`, `(3,)` [m]; a read-only copy. 0.3 m where the mass is too small
-    /// to tell.
+    /// Standard deviation of each coordinate of `com`, `(3,)` [m]; a read-only copy.
+    ///
+    /// It is 0.3 m where the mass is too small to tell.
     #[getter]
     fn com_std<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         numbers(py, &self.0.std()[1..4])
