@@ -263,7 +263,7 @@ fn tails(
             }
             test.advance(observer, Step::Of(dt));
             test.evaluate(&[], false);
-            test.follow(&[], dt, starts || test.suspicious());
+            test.follow(dt, starts || test.suspicious());
             since += dt;
             if since < SETTLED {
                 return;

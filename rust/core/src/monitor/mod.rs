@@ -4,6 +4,7 @@ mod bias;
 mod clock;
 mod contact_monitor;
 mod external;
+mod limits;
 mod options;
 mod payload;
 mod report;
