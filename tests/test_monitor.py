@@ -92,6 +92,9 @@ def test_region_on_every_branch() -> None:
     robot = cs.Robot.named("atlas")
     monitor = cs.ContactMonitor(robot, dt=DT, observer_gain=500.0, torque_threshold=0.5)
     q, zero = robot.neutral(), np.zeros(robot.nv)
+    # At its limit a joint's torque would be that of a stop: knees and elbows are a little bent.
+    low, high = robot.position_limits[7:].T
+    q[7:] = np.clip(q[7:], low + 0.1, high - 0.1)
     weight = robot.inverse_dynamics(q, zero, zero)
     tau_ext = np.zeros(robot.nv)
     for name in ("l_arm_ely", "r_leg_kny"):

@@ -21,7 +21,7 @@ HALF = 1.5  # before the change and after it [s]
 def motion(seed: int) -> tuple[np.ndarray, ...]:
     rng = np.random.default_rng(seed)
     angle = OMEGA * DT * np.arange(int(2 * HALF / DT))[:, None] + rng.uniform(0.0, 2 * np.pi, 7)
-    middle = [*rng.uniform(-0.7, 0.7, 7), 0, 0.5, 0, -1.0, 0, 0.5, 0]
+    middle = rng.uniform(-0.7, 0.7, 7) + np.array([0.0, 0.5, 0.0, -1.0, 0.0, 0.5, 0.0])
     return middle + 0.3 * np.sin(angle), 0.3 * OMEGA * np.cos(angle), -0.3 * OMEGA**2 * np.sin(angle)
 
 

@@ -1501,7 +1501,8 @@ class ContactMonitor:
         dt: Time between two calls [s].
         sensors: Of `ForceTorqueSensor`, in the order of the readings.
         wanted_contacts: Names of the sensors whose contacts are meant (feet, hands): what touches behind them is no
-            collision (eq. 20).
+            collision (eq. 20). Or pairs `(link, point_local)` without a sensor: any force at that point of the link
+            [m] is meant, and what it cannot explain of the torques is tested.
         observer_gain: Of the momentum observer, scalar or `(nv,)` [1/s].
         torque_threshold: Scalar or `(nv,)` [Nm; N for sliding joints]. With a calibration the default is what its noise
             exceeds at its rate of false alarms.
@@ -1756,7 +1757,10 @@ class ContactReport:
         """External torque of all contacts, free of the tracked bias, `(nv,)` [Nm; N for sliding joints]; read-only."""
     @property
     def collision_torque(self) -> NDArray[np.float64]:
-        """`external_torque` without wanted contacts, `(nv,)` [Nm; N for sliding joints]; zero at joints left out; read-only."""
+        """`external_torque` without wanted contacts and stops, `(nv,)` [Nm; N for sliding joints]; read-only.
+
+        Zero at joints left out. Of contacts wanted at points, what no force there explains, by least squares.
+        """
     @property
     def wrenches(self) -> NDArray[np.float64]:
         """The external wrench that each sensor sees, `(n_sensors, 6)` [N, Nm]; read-only.
@@ -1771,6 +1775,12 @@ class ContactReport:
         """Names of the joints whose torques say nothing of a collision, since a wanted contact loads them unmeasured.
 
         Those behind its sensor, and while that gives no reading (and a little after) those between it and the base.
+        """
+    @property
+    def limited_joints(self) -> tuple[str, ...]:
+        """Names of the joints at a limit of their position whose stop pushes them inward, which is no contact.
+
+        Within 0.02 rad, 5 mm for sliding joints, of the limit, and at most 2 % of the range.
         """
     @property
     def acceleration(self) -> NDArray[np.float64]:

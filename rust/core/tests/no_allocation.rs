@@ -199,8 +199,7 @@ fn a_tick_allocates_nothing() {
         given.torque_is_external = true;
         let thresholds = MonitorOptions { bias_time_constant: Some(0.02), ..MonitorOptions::new(1e-3) };
         let isolation = IsolatorOptions { torque_threshold: None, ..thresholds.isolation.clone() };
-        let tested =
-            MonitorOptions { calibration: Some(given), isolation, ..MonitorOptions::new(1e-3) };
+        let tested = MonitorOptions { calibration: Some(given), isolation, ..MonitorOptions::new(1e-3) };
         for options in [thresholds, tested] {
             let mut monitor = ContactMonitor::new(robot.clone(), &options).expect("valid options");
             let work = || {

@@ -19,7 +19,7 @@ use crate::observer::scalar_or_vector;
 use crate::report::PyContactReport;
 use crate::returned::{numbers, read_only, wrench_rows};
 use crate::robot::PyRobot;
-use crate::sensor::{sensor_names, sensor_tuple, sensors, wrench_thresholds};
+use crate::sensor::{sensor_tuple, sensors, wanted_places, wrench_thresholds};
 
 /// The sense of touch of one robot, called once a control tick: observer, compensation, bias, detection, isolation.
 ///
@@ -30,7 +30,8 @@ use crate::sensor::{sensor_names, sensor_tuple, sensors, wrench_thresholds};
 ///     dt: Time between two calls [s].
 ///     sensors: Of `ForceTorqueSensor`, in the order of the readings.
 ///     wanted_contacts: Names of the sensors whose contacts are meant (feet, hands): what touches behind them is no
-///         collision (eq. 20).
+///         collision (eq. 20). Or pairs `(link, point_local)` without a sensor: any force at that point of the link
+///         [m] is meant, and what it cannot explain of the torques is tested.
 ///     observer_gain: Of the momentum observer, scalar or `(nv,)` [1/s].
 ///     torque_threshold: Scalar or `(nv,)` [Nm; N for sliding joints]. With a calibration the default is what its noise
 ///         exceeds at its rate of false alarms.
@@ -156,7 +157,7 @@ impl PyContactMonitor {
             options.isolation.sensors = self::sensors(sensors)?;
         }
         if let Some(wanted) = wanted_contacts {
-            options.isolation.wanted_contacts = sensor_names(wanted)?;
+            (options.isolation.wanted_contacts, options.wanted_points) = wanted_places(wanted)?;
         }
         let monitor = ContactMonitor::new(robot.get().0.clone(), &options);
         let monitor = monitor.map_err(|error| to_python(robot.py(), error))?;

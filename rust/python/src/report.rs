@@ -13,7 +13,7 @@ use crate::once::Once;
 use crate::pickle::{plain_dict, reduced, Reduced};
 use crate::returned::{numbers, wrench_rows};
 
-const ATTRIBUTES: [&str; 14] = [
+const ATTRIBUTES: [&str; 15] = [
     "time",
     "collision",
     "onset",
@@ -25,6 +25,7 @@ const ATTRIBUTES: [&str; 14] = [
     "wrenches",
     "sensors_left_out",
     "joints_left_out",
+    "limited_joints",
     "acceleration",
     "contacts",
     "truncated",
@@ -118,7 +119,9 @@ impl PyContactReport {
         self.arrays.external_torque.get(py, || Ok(numbers(py, &self.report.external_torque)))
     }
 
-    /// `external_torque` without wanted contacts, `(nv,)` [Nm; N for sliding joints]; zero at joints left out; read-only.
+    /// `external_torque` without wanted contacts and stops, `(nv,)` [Nm; N for sliding joints]; read-only.
+    ///
+    /// Zero at joints left out. Of contacts wanted at points, what no force there explains, by least squares.
     #[getter]
     fn collision_torque<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.arrays.collision_torque.get(py, || Ok(numbers(py, &self.report.collision_torque)))
@@ -144,6 +147,14 @@ impl PyContactReport {
     #[getter]
     fn joints_left_out<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.report.joints_left_out.iter().map(|joint| &self.names.joints[*joint]))
+    }
+
+    /// Names of the joints at a limit of their position whose stop pushes them inward, which is no contact.
+    ///
+    /// Within 0.02 rad, 5 mm for sliding joints, of the limit, and at most 2 % of the range.
+    #[getter]
+    fn limited_joints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.report.limited_joints.iter().map(|joint| &self.names.joints[*joint]))
     }
 
     /// Estimated acceleration, `(nv,)` [rad/s^2; m/s^2 for sliding joints]; read-only.

@@ -155,6 +155,31 @@ pub fn sensor_names(object: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
     names("wanted_contacts", "sensors", object)
 }
 
+/// Where contacts are meant: names of sensors, and links with points on them.
+pub fn wanted_places(object: &Bound<'_, PyAny>) -> PyResult<(Vec<String>, Vec<(String, [f64; 3])>)> {
+    let py = object.py();
+    let wanted = || {
+        let text = "expected an iterable of the names of sensors and of pairs (link, point_local)";
+        format!("wanted_contacts: {text}, got {}", shown(object))
+    };
+    let refuse = |cause| refused(py, cause, wanted);
+    if object.is_instance_of::<PyString>() {
+        return Err(input(py, wanted()));
+    }
+    let (mut names, mut points) = (vec![], vec![]);
+    for item in object.try_iter().map_err(refuse)? {
+        let item = item.map_err(refuse)?;
+        if item.is_instance_of::<PyString>() {
+            names.push(item.extract().map_err(refuse)?);
+        } else {
+            let (link, point): (String, Bound<'_, PyAny>) = item.extract().map_err(refuse)?;
+            let point = Vector::new("wanted_contacts", &point)?.fixed::<3>(py, "wanted_contacts")?;
+            points.push((link, point));
+        }
+    }
+    Ok((names, points))
+}
+
 /// An iterable of strings, but no string itself: names of `what`.
 pub fn names(argument: &str, what: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
     let py = object.py();

@@ -296,7 +296,7 @@ fn tails(
             }
             test.advance(row.kinematics, row.velocity, row.unexplained, Step::Of(dt));
             test.evaluate(&[], false);
-            test.follow(&[], dt, row.starts || test.suspicious());
+            test.follow(dt, row.starts || test.suspicious());
             since += dt;
             if since < SETTLED {
                 return;

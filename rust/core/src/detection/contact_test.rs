@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::free_directions::{level_shares, FreeDirections};
 use super::friction_errors::FrictionErrors;
 use super::payload_errors::{Load, PayloadErrors};
 use super::slow_errors::SlowErrors;
@@ -37,6 +38,8 @@ struct Signal {
     level: f64,
     /// The level of Gaussian errors.
     gaussian_level: f64,
+    /// Of the level, where directions are taken away, by their number.
+    shares: Vec<f64>,
     statistic: f64,
 }
 
@@ -51,6 +54,7 @@ impl Signal {
             whitening: Whitening::new(gain.len()),
             level,
             gaussian_level,
+            shares: level_shares(gain.len(), gaussian_level),
             statistic: 0.0,
         }
     }
@@ -106,6 +110,8 @@ pub(crate) struct ContactTest {
     next: usize,
     started: bool,
     without_bias: Vec<f64>,
+    /// The torque that slow errors are followed by, without what is free.
+    followed: Vec<f64>,
     /// By velocity variable: over one where the joint is over its own threshold.
     joints: Vec<f64>,
     suspicious: bool,
@@ -135,6 +141,7 @@ impl ContactTest {
             next: 0,
             started: false,
             without_bias: vec![0.0; nv],
+            followed: vec![0.0; nv],
             joints: vec![0.0; nv],
             suspicious: false,
             robot,
@@ -181,8 +188,19 @@ impl ContactTest {
     /// the one to look at without a bank.
     #[inline]
     pub fn evaluate(&mut self, torque: &[f64], in_contact: bool) {
+        self.evaluate_beside(torque, in_contact, None);
+    }
+
+    /// The same where what is in free directions does not count.
+    #[inline]
+    pub fn evaluate_beside(
+        &mut self,
+        torque: &[f64],
+        in_contact: bool,
+        mut free: Option<&mut FreeDirections>,
+    ) {
         let share = if in_contact { SUSPICIOUS } else { 1.0 };
-        let Self { bank, signals, slow, without_bias, joints, .. } = self;
+        let Self { bank, signals, slow, without_bias, followed, joints, .. } = self;
         self.suspicious = false;
         joints.fill(0.0);
         for (which, signal) in signals.iter_mut().enumerate() {
@@ -190,7 +208,18 @@ impl ContactTest {
             for ((value, torque), bias) in without_bias.iter_mut().zip(torque).zip(slow.bias()) {
                 *value = torque - bias;
             }
-            signal.statistic = signal.whitening.squared_norm(without_bias);
+            signal.statistic = match &mut free {
+                Some(free) => {
+                    let (left, taken) = free.leave(&mut signal.whitening, without_bias);
+                    left / signal.shares[taken]
+                }
+                None => signal.whitening.squared_norm(without_bias),
+            };
+            if which == 0 {
+                for ((followed, left), bias) in followed.iter_mut().zip(&*without_bias).zip(slow.bias()) {
+                    *followed = left + bias;
+                }
+            }
             self.suspicious |= signal.statistic > SUSPICIOUS * signal.level;
             if signal.statistic <= share * signal.level {
                 continue;
@@ -208,15 +237,13 @@ impl ContactTest {
         }
     }
 
-    /// A step of `dt` (s): slow errors are followed, or not where something may touch the robot. `torque` as in
-    /// [`ContactTest::evaluate`].
+    /// A step of `dt` (s): slow errors are followed, or not where something may touch the robot.
     #[inline]
-    pub fn follow(&mut self, torque: &[f64], dt: f64, touched: bool) {
-        let torque = self.bank.as_ref().map_or(torque, |bank| &bank.torques()[0]);
+    pub fn follow(&mut self, dt: f64, touched: bool) {
         if touched || self.payload.settling() {
-            self.slow.lose(torque, dt);
+            self.slow.lose(&self.followed, dt);
         } else {
-            self.slow.follow(torque, dt);
+            self.slow.follow(&self.followed, dt);
         }
     }
 
@@ -228,9 +255,16 @@ impl ContactTest {
         self.started = false;
     }
 
-    /// The torque that slow errors are followed by, `torque` without a bank.
-    pub fn slowest<'a>(&'a self, torque: &'a [f64]) -> &'a [f64] {
-        self.bank.as_ref().map_or(torque, |bank| &bank.torques()[0])
+    /// The torque that slow errors are followed by.
+    pub fn slowest(&self) -> &[f64] {
+        &self.followed
+    }
+
+    /// Leaves of a torque, free of bias, what is not in free directions.
+    pub fn leave(&mut self, torque: &mut [f64], free: &mut FreeDirections) {
+        if let Some(signal) = self.signals.first_mut() {
+            free.leave(&mut signal.whitening, torque);
+        }
     }
 
     /// The slowest gain of the bank (1/s); none without one.

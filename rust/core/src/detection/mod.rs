@@ -3,6 +3,7 @@
 mod contact_test;
 mod detector;
 mod false_alarms;
+mod free_directions;
 mod friction_errors;
 mod gate;
 mod payload_errors;
@@ -16,7 +17,9 @@ pub(crate) use contact_test::{ContactTest, Level, FOLLOW_TIME, GAINS, LARGEST_ST
 pub(crate) use detector::Detector;
 pub use false_alarms::Tail;
 pub(crate) use false_alarms::{gaussian_level, PEAK_TIME};
+pub(crate) use free_directions::FreeDirections;
 pub(crate) use friction_errors::{FrictionErrors, SLOW};
-pub(crate) use payload_errors::Load;
 pub(crate) use gate::{check_threshold, check_wrench_threshold, is_over, Gate};
+pub(crate) use payload_errors::Load;
 pub(crate) use release::{ReleaseDetector, ReleaseRule};
+pub(crate) use whitening::Whitening;

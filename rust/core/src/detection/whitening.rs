@@ -84,6 +84,31 @@ impl Whitening {
         sum
     }
 
+    /// The torque of the last [`Whitening::squared_norm`], whitened: of unit covariance.
+    pub fn whitened_mut(&mut self) -> &mut [f64] {
+        &mut self.whitened
+    }
+
+    /// Whitens a torque, which is given by its entries.
+    pub fn whiten(&self, entry: impl Fn(usize) -> f64, whitened: &mut [f64]) {
+        let n = self.size;
+        for i in 0..n {
+            let row = &self.factor[i * n..=i * n + i];
+            let known: f64 = row[..i].iter().zip(&*whitened).map(|(a, b)| a * b).sum();
+            whitened[i] = (entry(i) - known) * row[i];
+        }
+    }
+
+    /// The torque that [`Whitening::whitened_mut`] is of.
+    pub fn unwhiten(&self, torque: &mut [f64]) {
+        let n = self.size;
+        for (i, torque) in torque.iter_mut().enumerate() {
+            let row = &self.factor[i * n..=i * n + i];
+            let known: f64 = row[..i].iter().zip(&self.whitened).map(|(a, b)| a * b).sum();
+            *torque = known + self.whitened[i] / row[i];
+        }
+    }
+
     /// The standard deviation of each torque (Nm).
     pub fn deviations(&self) -> &[f64] {
         &self.deviations

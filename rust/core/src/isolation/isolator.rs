@@ -71,6 +71,8 @@ pub struct ContactIsolator {
     locate_within: f64,
     kinematics: Kinematics,
     pub(super) regions: Regions,
+    /// By velocity variable: its torque says nothing of contacts.
+    left_out: Vec<bool>,
     /// The one being worked on; it changes places with its entry in `regions`.
     pub(super) region: Region,
     /// Which sensors have a reading.
@@ -127,6 +129,7 @@ impl ContactIsolator {
             active: vec![true; tree.len()],
             regions: Regions::new(&robot, tree, wanted),
             region: Region::whole(&robot),
+            left_out: vec![false; nv],
             sensed: vec![0.0; nv],
             residual: vec![0.0; nv],
             measured: vec![0.0; nv],
@@ -190,9 +193,18 @@ impl ContactIsolator {
         self.isolation.clear();
         self.several.work.reset();
         self.divide(kinematics, tau_ext, wrenches, lagged);
+        let masked = self.left_out.contains(&true);
+        if masked {
+            self.regions.leave_out(&self.robot, &self.left_out);
+            for (residual, _) in
+                self.residual.iter_mut().zip(&self.left_out).filter(|(_, left_out)| **left_out)
+            {
+                *residual = 0.0;
+            }
+        }
         self.unexplained.copy_from_slice(&self.residual);
         // Joints that feel nothing at all do not contradict the sensors: an observer is slower than they are.
-        let felt = (0..tau_ext.len()).any(|k| is_over(tau_ext[k], self.threshold[k]));
+        let felt = (0..tau_ext.len()).any(|k| !self.left_out[k] && is_over(tau_ext[k], self.threshold[k]));
         if felt && !self.regions.base.unknown {
             std::mem::swap(&mut self.region, &mut self.regions.base);
             self.isolate_from_torques(kinematics);
@@ -211,8 +223,20 @@ impl ContactIsolator {
         }
         let overflow = [self.line.take_overflow(), self.several.caster.take_overflow()];
         self.isolation.truncated |= overflow.contains(&true) || self.several.work.was_refused();
+        if masked {
+            self.regions.restore(&self.robot);
+            self.left_out.fill(false);
+        }
         self.isolation.residual = self.unexplained.iter().map(|x| x * x).sum::<f64>().sqrt();
         &self.isolation
+    }
+
+    /// In the next call, the torque of a joint at a limit is left out that pushes it inward; `inward` `(nv,)` has the signs of
+    /// such torques, zero for other joints.
+    pub(crate) fn leave_out(&mut self, inward: &[f64], tau_ext: &[f64]) {
+        for ((left_out, sign), torque) in self.left_out.iter_mut().zip(inward).zip(tau_ext) {
+            *left_out = sign * torque > 0.0;
+        }
     }
 
     /// The answer of the last call.

@@ -79,6 +79,24 @@ impl Regions {
         }
     }
 
+    /// Leaves out the torques of some velocity variables until [`Regions::restore`].
+    pub fn leave_out(&mut self, robot: &Robot, left_out: &[bool]) {
+        for region in std::iter::once(&mut self.base).chain(&mut self.behind) {
+            for body in WORLD + 1..robot.body_count() {
+                let range = robot.velocity_range(body);
+                if left_out[range.clone()].contains(&true) {
+                    region.joints[body] = false;
+                    region.feels[range].fill(false);
+                }
+            }
+        }
+    }
+
+    /// All torques count again.
+    pub fn restore(&mut self, robot: &Robot) {
+        self.divide(robot);
+    }
+
     fn divide(&mut self, robot: &Robot) {
         let Self { tree, wanted, base, behind } = self;
         base.set(robot, tree, None);

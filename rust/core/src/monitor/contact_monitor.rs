@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use super::bias::BiasTracker;
 use super::clock::SampleClock;
+use super::limits::JointLimits;
 use super::options::MonitorOptions;
 use super::report::ContactReport;
 use super::sensing::Sensing;
 use super::source::{signal_of, Source};
-use crate::detection::{ContactTest, Detector, Load, ReleaseDetector};
+use crate::detection::{ContactTest, Detector, FreeDirections, Load, ReleaseDetector, Whitening};
 use crate::error::{Error, Result};
 use crate::isolation::ContactIsolator;
 use crate::observer::{MomentumObserver, Step};
@@ -56,6 +57,10 @@ pub struct ContactMonitor {
     pub(super) test: Option<ContactTest>,
     /// Of each joint (Nm, N).
     pub(super) threshold: Vec<f64>,
+    /// The thresholds as a covariance.
+    pub(super) scale: Whitening,
+    pub(super) limits: JointLimits,
+    pub(super) free: FreeDirections,
     pub(super) release: ReleaseDetector,
     pub(super) detector: Detector,
     pub(super) isolator: ContactIsolator,
@@ -117,6 +122,9 @@ impl ContactMonitor {
             sensing: (!options.isolation.sensors.is_empty()).then_some(sensing),
             bias: options.bias_time_constant.filter(|_| test.is_none()).map(tracker).transpose()?,
             test,
+            scale: scale_of(&threshold),
+            limits: JointLimits::new(&robot),
+            free: FreeDirections::new(&robot, &options.wanted_points)?,
             threshold,
             report: ContactReport {
                 links: Vec::with_capacity(robot.touchable_links().len()),
@@ -125,6 +133,7 @@ impl ContactMonitor {
                 wrenches: Vec::with_capacity(sensors),
                 sensors_left_out: Vec::with_capacity(sensors),
                 joints_left_out: Vec::with_capacity(robot.joint_names().len()),
+                limited_joints: Vec::with_capacity(robot.joint_names().len()),
                 isolation: isolator.empty_answer(),
                 ..ContactReport::default()
             },
@@ -154,6 +163,7 @@ impl ContactMonitor {
         self.source = Some(Source::Motors);
         let step = self.clock.step(sample.dt);
         let new = self.clock.started() && !step.is_gap();
+        self.limits.set_configuration(sample.q);
         self.observer.advance(sample, step);
         self.clock.accept(sample.dt);
         self.sense(sample.wrenches, step);
@@ -181,6 +191,7 @@ impl ContactMonitor {
     /// Bias, detection and isolation of what was sensed; `new` is false where the step brought no new torque.
     pub(super) fn judge(&mut self, step: Step, new: bool) -> &ContactReport {
         let length = step.length(self.clock.dt());
+        self.free.set_pose(&self.robot, self.observer.kinematics(), self.limits.inward());
         let felt = self.detector.sense(self.sensing.as_ref().map_or(&[], Sensing::unwanted));
         if self.test.is_some() {
             self.test_all_joints(step, new, felt);
@@ -204,7 +215,10 @@ impl ContactMonitor {
 
     /// The contacts behind the torque and the wrenches.
     fn isolate(&mut self) {
-        let (kinematics, torque) = (self.observer.kinematics(), &self.report.external_torque);
+        let ContactReport { external_torque, collision_torque, .. } = &self.report;
+        let torque = if self.free.has_points() { collision_torque } else { external_torque };
+        let kinematics = self.observer.kinematics();
+        self.isolator.leave_out(self.limits.inward(), external_torque);
         match &self.sensing {
             Some(sensing) => {
                 let (wrenches, lag) = (sensing.trusted(), Some(sensing.wrenches()));
@@ -233,80 +247,6 @@ impl ContactMonitor {
         }
     }
 
-    /// Tests all joints at once, and subtracts the bias that the test follows; `new` and `felt` as in
-    /// [`ContactMonitor::remove_bias`].
-    fn test_all_joints(&mut self, step: Step, new: bool, felt: bool) {
-        let Self { test, observer, sensing, detector, release, report, clock, .. } = self;
-        let Some(test) = test else { return };
-        let ContactReport { collision_torque, external_torque, remainder_learned, significance, .. } = report;
-        let length = step.length(clock.dt());
-        *remainder_learned = false;
-        leave_out(sensing, collision_torque, Some(test.slow().bias()));
-        test.advance(observer.kinematics(), observer.velocity(), observer.unexplained(), step);
-        test.evaluate(collision_torque, detector.collision());
-        let touched = detector.collision() || felt || test.suspicious();
-        if touched && !new {
-            release.interrupt();
-        } else if touched {
-            let torque = test.slowest(collision_torque);
-            let over = release.update(torque, test.slow().bias(), length);
-            if over && !felt && test.slow().allows(release.remainder(), |k| release.could_keep(k)) {
-                test.slow_mut().set(release.remainder());
-                release.reset();
-                detector.reset();
-                test.evaluate(collision_torque, false);
-                *remainder_learned = true;
-            }
-        } else {
-            release.reset();
-        }
-        test.follow(collision_torque, length, touched || !new);
-        detector.update(test.joints(), length);
-        *significance = Some(test.significance());
-        for torque in [collision_torque, external_torque] {
-            torque.iter_mut().zip(test.slow().bias()).for_each(|(torque, bias)| *torque -= bias);
-        }
-    }
-
-    /// Subtracts the bias, which follows the collision torque while nothing touches, over a step of `length` (s). `new`
-    /// is false where the step brought no new torque: the first, and one over a gap; `felt`: a sensor is over its threshold.
-    /// False during the bias's first estimate.
-    fn remove_bias(&mut self, length: f64, new: bool, felt: bool) -> bool {
-        let Self { bias, sensing, detector, release, report, .. } = self;
-        let ContactReport { collision_torque, external_torque, remainder_learned, .. } = report;
-        *remainder_learned = false;
-        let Some(bias) = bias else {
-            leave_out(sensing, collision_torque, None);
-            return true;
-        };
-        // A joint that is left out has no torque to follow.
-        leave_out(sensing, collision_torque, Some(bias.bias()));
-        let ready = bias.ready();
-        let without_bias = collision_torque.iter().zip(bias.bias()).map(|(torque, bias)| torque - bias);
-        let touched = ready && (detector.collision() || felt || detector.any_over(without_bias));
-        if touched && !new {
-            release.interrupt();
-        } else if touched {
-            let over = release.update(collision_torque, bias.bias(), length);
-            // A sensor that feels a contact knows better than a torque that stands still.
-            if over && !felt && bias.allows(release.remainder()) {
-                bias.set(release.remainder());
-                release.reset();
-                detector.reset();
-                *remainder_learned = true;
-            }
-        } else {
-            release.reset();
-            if new {
-                bias.follow(collision_torque, length);
-            }
-        }
-        for torque in [collision_torque, external_torque] {
-            torque.iter_mut().zip(bias.bias()).for_each(|(torque, bias)| *torque -= bias);
-        }
-        ready
-    }
-
     /// What the last tick said.
     pub fn report(&self) -> &ContactReport {
         &self.report
@@ -328,6 +268,8 @@ impl ContactMonitor {
         report.wrenches.clear();
         report.sensors_left_out.clear();
         report.joints_left_out.clear();
+        report.limited_joints.clear();
+        report.limited_joints.extend(self.limits.pushed(&report.external_torque, &self.threshold));
         if let Some(sensing) = &self.sensing {
             report.wrenches.extend_from_slice(sensing.external());
             let left_out = sensing.external().iter().enumerate().filter(|(_, wrench)| wrench.is_none());
@@ -388,18 +330,20 @@ impl ContactMonitor {
     }
 }
 
+/// Thresholds `(nv,)` as a covariance.
+pub(super) fn scale_of(threshold: &[f64]) -> Whitening {
+    let mut scale = Whitening::new(threshold.len());
+    scale.advance(|i, row| {
+        row.fill(0.0);
+        row[i] = threshold[i] * threshold[i];
+    });
+    scale
+}
+
 /// An error of the observer's gain, by its name here.
 pub(super) fn of_observer(error: Error) -> Error {
     match error {
         Error::Input { argument, problem } if argument == "gain" => Error::input("observer_gain", problem),
         other => other,
-    }
-}
-
-/// Puts `value`, or zero, for the torques of joints that are left out.
-fn leave_out(sensing: &Option<Sensing>, torque: &mut [f64], value: Option<&[f64]>) {
-    let Some(sensing) = sensing else { return };
-    for (k, torque) in torque.iter_mut().enumerate().filter(|(k, _)| sensing.blind()[*k]) {
-        *torque = value.map_or(0.0, |value| value[k]);
     }
 }

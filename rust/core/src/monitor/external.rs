@@ -44,6 +44,7 @@ impl ContactMonitor {
             }
         }
         let step = self.clock.step(sample.dt);
+        self.limits.set_configuration(sample.q);
         self.observer.follow(sample, step.is_gap() || !self.clock.started());
         self.clock.accept(sample.dt);
         self.sense(sample.wrenches, step);

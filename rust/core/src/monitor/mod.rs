@@ -4,6 +4,8 @@ mod bias;
 mod clock;
 mod contact_monitor;
 mod external;
+mod judgement;
+mod limits;
 mod options;
 mod payload;
 mod report;

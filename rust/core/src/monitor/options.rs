@@ -42,6 +42,10 @@ pub struct MonitorOptions {
     pub wrench_gain: Option<f64>,
     /// Thresholds, number of contacts, pushing, sensors.
     pub isolation: IsolatorOptions,
+    /// Links and points on them, in their frames (m), at which contacts are meant that no sensor measures: a force there is
+    /// no collision.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub wanted_points: Vec<(String, [f64; 3])>,
     /// A signal stays on for this time after it was last over its threshold (s).
     pub hold_time: f64,
     /// Time constant of the bias that is tracked while nothing touches (s); none for no tracking, or 3 s where all joints are
@@ -76,6 +80,7 @@ impl MonitorOptions {
                 wrench_threshold: vec![2.0],
                 ..IsolatorOptions::default()
             },
+            wanted_points: vec![],
             hold_time: 0.02,
             bias_time_constant: None,
             bias_limit: BIAS_LIMIT,

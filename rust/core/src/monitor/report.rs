@@ -44,7 +44,8 @@ pub struct ContactReport {
     pub links: Vec<LinkIndex>,
     /// Bias-free external torque of all contacts `(nv,)`.
     pub external_torque: Vec<f64>,
-    /// The same without wanted contacts (Vorndamme 2017, eq. 20), zero where joints are left out `(nv,)`.
+    /// The same without wanted contacts (Vorndamme 2017, eq. 20) and stops of joints, zero where joints are left out `(nv,)`.
+    /// Of contacts wanted at points, what the torque of forces there cannot explain, by least squares.
     pub collision_torque: Vec<f64>,
     /// External wrench that each sensor sees, world axes, at its origin; none where one is left out (N, Nm).
     pub wrenches: Vec<Option<Vector6<f64>>>,
@@ -53,6 +54,8 @@ pub struct ContactReport {
     /// Indices of the joints whose torques a wanted contact loads unmeasured: behind its sensor, and on the way there
     /// from the base while the sensor gives no reading, and until the observer has forgotten that gap.
     pub joints_left_out: Vec<usize>,
+    /// Indices of the joints at a limit of their position whose stop pushes them inward: that torque is no contact.
+    pub limited_joints: Vec<usize>,
     /// The contacts.
     pub isolation: Isolation,
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector6;
 
-use super::contact_monitor::of_observer;
+use super::contact_monitor::{of_observer, scale_of};
 use super::source::Source;
 use super::{ContactMonitor, MonitorOptions};
 use crate::detection::check_wrench_threshold;
@@ -30,6 +30,7 @@ impl ContactMonitor {
             self.report.significance = None;
         }
         self.detector.set_threshold(self.threshold.clone());
+        self.scale = scale_of(&self.threshold);
         Ok(())
     }
 
