@@ -1504,14 +1504,14 @@ class ContactMonitor:
             collision (eq. 20). Or pairs `(link, point_local)` without a sensor: any force at that point of the link
             [m] is meant, and what it cannot explain of the torques is tested.
         observer_gain: Of the momentum observer, scalar or `(nv,)` [1/s].
-        torque_threshold: Scalar or `(nv,)` [Nm; N for sliding joints]. With a calibration the default is what its noise
-            exceeds at its rate of false alarms.
+        torque_threshold: Scalar or `(nv,)` [Nm; N for sliding joints]. With a calibration and without a threshold, all
+            joints are tested at once, at three gains, against a level for the calibration's rate of false alarms.
         wrench_threshold: On external wrenches: scalar, `(6,)` or `(n_sensors, 6)` [N, Nm].
         wrench_gain: Of the low-pass on external wrenches, whose readings and velocities are noisy [1/s]; infinite for
             none. None: the smallest of `observer_gain`, and no low-pass where that is at least `0.5 / dt`.
         bias_time_constant: Tracks the torque that errors of the model cause while nothing touches [s]; None for no
-            tracking. Nothing is detected in the first time constant, and what touches in less than half of it is not
-            learnt.
+            tracking, or 3 s where all joints are tested at once. With thresholds, nothing is detected in the first time
+            constant, and what touches in less than half of it is not learnt.
         bias_limit: Greatest bias of each joint, in thresholds.
         bias_settle_time: A torque that stands still for so long becomes the bias [s]; None: a contact may last for ever.
         hysteresis: Share of its greatest torque in a contact that a joint's gear or sensor may keep after it, scalar or
