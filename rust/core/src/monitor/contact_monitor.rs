@@ -114,15 +114,20 @@ impl ContactMonitor {
         let mut monitor = Self {
             clock: SampleClock::new(options.dt),
             source: None,
-            observer,
             detector,
             release,
             sensing: (!options.isolation.sensors.is_empty()).then_some(sensing),
             bias: options.bias_time_constant.filter(|_| test.is_none()).map(tracker).transpose()?,
+            free: FreeDirections::new(
+                &robot,
+                &options.wanted_points,
+                observer.gain(),
+                test.as_ref().map_or(&[], ContactTest::gains),
+            )?,
+            observer,
             test,
             scale: scale_of(&threshold),
             limits: JointLimits::new(&robot),
-            free: FreeDirections::new(&robot, &options.wanted_points)?,
             threshold,
             report: ContactReport {
                 links: Vec::with_capacity(robot.touchable_links().len()),
@@ -189,7 +194,8 @@ impl ContactMonitor {
     /// Bias, detection and isolation of what was sensed; `new` is false where the step brought no new torque.
     pub(super) fn judge(&mut self, step: Step, new: bool) -> &ContactReport {
         let length = step.length(self.clock.dt());
-        self.free.set_pose(&self.robot, self.observer.kinematics(), self.limits.inward());
+        let inward = self.limits.inward();
+        self.free.set_pose(&self.robot, self.observer.kinematics(), inward, length, new);
         let felt = self.detector.sense(self.sensing.as_ref().map_or(&[], Sensing::unwanted));
         if self.test.is_some() {
             self.test_all_joints(step, new, felt);
@@ -292,7 +298,7 @@ impl ContactMonitor {
         let Some(bias) = bias else {
             leave_out(sensing, collision_torque, None);
             if free.any() {
-                free.leave(scale, collision_torque);
+                free.leave(0, scale, collision_torque);
             }
             return true;
         };
@@ -300,7 +306,7 @@ impl ContactMonitor {
         leave_out(sensing, collision_torque, Some(bias.bias()));
         if free.any() {
             collision_torque.iter_mut().zip(bias.bias()).for_each(|(torque, bias)| *torque -= bias);
-            free.leave(scale, collision_torque);
+            free.leave(0, scale, collision_torque);
             collision_torque.iter_mut().zip(bias.bias()).for_each(|(torque, bias)| *torque += bias);
         }
         let ready = bias.ready();
@@ -365,6 +371,7 @@ impl ContactMonitor {
     pub fn reset(&mut self) {
         self.forget_source();
         self.observer.reset();
+        self.free.reset();
         self.detector.reset();
         self.report.isolation.clear();
         self.report.external_torque.fill(0.0);
