@@ -66,7 +66,9 @@ def test_significance_is_in_standard_deviations() -> None:
     weight = ROBOT.inverse_dynamics(q, v, v)
     for _ in range(200):
         free = monitor.update(q, v, weight)
-    assert free.significance is not None and free.significance < 2.0 and not free.collision
+    assert free.significance is not None
+    assert free.significance < 2.0
+    assert not free.collision
     found = []
     for force in (2.0, 5.0, 20.0):
         torque = ROBOT.jacobian(q, "iiwa_link_6")[:3].T @ [0.0, force, 0.0]
@@ -74,8 +76,10 @@ def test_significance_is_in_standard_deviations() -> None:
         for _ in range(200):
             report = monitor.update(q, v, weight - torque)
         found.append(report.significance)
-    assert found == sorted(found) and found[-1] > 5.0
-    assert report.collision and report.links
+    assert found == sorted(found)
+    assert found[-1] > 5.0
+    assert report.collision
+    assert report.links
 
 
 def test_thresholds_of_joints_remain_a_choice() -> None:

@@ -203,6 +203,7 @@ impl ContactTest {
         let Self { bank, signals, slow, without_bias, followed, joints, .. } = self;
         self.suspicious = false;
         joints.fill(0.0);
+        let first = usize::from(bank.is_some());
         for (which, signal) in signals.iter_mut().enumerate() {
             let torque = bank.as_ref().map_or(torque, |bank| &bank.torques()[which]);
             for ((value, torque), bias) in without_bias.iter_mut().zip(torque).zip(slow.bias()) {
@@ -210,7 +211,7 @@ impl ContactTest {
             }
             signal.statistic = match &mut free {
                 Some(free) => {
-                    let (left, taken) = free.leave(&mut signal.whitening, without_bias);
+                    let (left, taken) = free.leave(first + which, &mut signal.whitening, without_bias);
                     left / signal.shares[taken]
                 }
                 None => signal.whitening.squared_norm(without_bias),
@@ -260,10 +261,15 @@ impl ContactTest {
         &self.followed
     }
 
-    /// Leaves of a torque, free of bias, what is not in free directions.
+    /// The gains of the bank (1/s); none without one.
+    pub fn gains(&self) -> &[f64] {
+        self.bank.as_ref().map_or(&[], ObserverBank::gains)
+    }
+
+    /// Leaves of the reported torque, free of bias, what is not in free directions.
     pub fn leave(&mut self, torque: &mut [f64], free: &mut FreeDirections) {
         if let Some(signal) = self.signals.first_mut() {
-            free.leave(&mut signal.whitening, torque);
+            free.leave(0, &mut signal.whitening, torque);
         }
     }
 

@@ -14,6 +14,14 @@ const SMALLEST_SHARE: f64 = 1e-6;
 /// Rounds of bisection for a level; each halves the interval.
 const ROUNDS: usize = 50;
 
+/// Columns behind a low-pass.
+#[derive(Debug, Clone)]
+struct Lagged {
+    /// By velocity variable (1/s).
+    gain: Vec<f64>,
+    columns: Vec<f64>,
+}
+
 /// Which torques are free, by pose.
 #[derive(Debug, Clone)]
 pub(crate) struct FreeDirections {
@@ -22,6 +30,10 @@ pub(crate) struct FreeDirections {
     points: Vec<(usize, Vector3<f64>)>,
     /// Three columns a point, `(nv,)` each.
     columns: Vec<f64>,
+    /// The same behind the low-pass of each torque that is looked at: what a force that lasts causes there while the robot
+    /// moves. The first is of the torque that is reported.
+    lagged: Vec<Lagged>,
+    started: bool,
     /// By velocity variable: the sign of a stop's torque where the joint is at a limit, else zero.
     inward: Vec<f64>,
     at_limit: bool,
@@ -31,11 +43,12 @@ pub(crate) struct FreeDirections {
 }
 
 impl FreeDirections {
-    /// With contacts wanted at points of links, in their frames.
+    /// With contacts wanted at points of links, in their frames; `gain` `(nv,)` (1/s) is of the torque that is reported,
+    /// `bank` (1/s) of those that are tested beside it.
     ///
     /// # Errors
     /// [`Error::Input`] for a link that nothing moves, and a point that is none.
-    pub fn new(robot: &Robot, wanted: &[(String, [f64; 3])]) -> Result<Self> {
+    pub fn new(robot: &Robot, wanted: &[(String, [f64; 3])], gain: &[f64], bank: &[f64]) -> Result<Self> {
         let nv = robot.nv();
         let place = |(link, point): &(String, [f64; 3])| {
             let index: LinkIndex = robot.link(link).map_err(of_wanted)?;
@@ -51,9 +64,14 @@ impl FreeDirections {
             Ok((link.body, link.placement.transform_point(&Vector3::from(*point))))
         };
         let points: Vec<_> = wanted.iter().map(place).collect::<Result<_>>()?;
+        let columns = vec![0.0; 3 * points.len() * nv];
+        let behind = |gain: Vec<f64>| Lagged { gain, columns: columns.clone() };
+        let bank = bank.iter().map(|gain| vec![*gain; nv]);
         Ok(FreeDirections {
             nv,
-            columns: vec![0.0; 3 * points.len() * nv],
+            lagged: std::iter::once(gain.to_vec()).chain(bank).map(behind).collect(),
+            started: false,
+            columns,
             points,
             inward: vec![0.0; nv],
             at_limit: false,
@@ -62,9 +80,17 @@ impl FreeDirections {
         })
     }
 
-    /// Takes in a pose, and the signs of stops' torques by velocity variable, zero where no joint is at a limit.
+    /// Takes in a pose after a step of `length` (s), and the signs of stops' torques by velocity variable, zero where no joint
+    /// is at a limit; `new` is false where the torques are those of before.
     #[inline]
-    pub fn set_pose(&mut self, robot: &Robot, kinematics: &Kinematics, inward: &[f64]) {
+    pub fn set_pose(
+        &mut self,
+        robot: &Robot,
+        kinematics: &Kinematics,
+        inward: &[f64],
+        length: f64,
+        new: bool,
+    ) {
         self.at_limit = inward.iter().any(|sign| *sign != 0.0);
         self.inward.copy_from_slice(inward);
         let nv = self.nv;
@@ -75,6 +101,31 @@ impl FreeDirections {
                 (0..3).for_each(|axis| columns[axis * nv + k] = column[axis]);
             });
         }
+        if self.points.is_empty() || !(new || !self.started) {
+            return;
+        }
+        for Lagged { gain, columns } in &mut self.lagged {
+            for (k, gain) in gain.iter().enumerate() {
+                let decay = if self.started { (-gain * length).exp() } else { 0.0 };
+                let now = self.columns[k..].iter().step_by(nv);
+                columns[k..].iter_mut().step_by(nv).zip(now).for_each(|(column, now)| {
+                    *column = now + decay * (*column - now);
+                });
+            }
+        }
+        self.started = true;
+    }
+
+    /// Another gain of the torque that is reported, by velocity variable (1/s), infinite for no low-pass.
+    pub fn set_gain(&mut self, gain: impl Fn(usize) -> f64) {
+        if let Some(reported) = self.lagged.first_mut() {
+            reported.gain.iter_mut().enumerate().for_each(|(k, value)| *value = gain(k));
+        }
+    }
+
+    /// Forgets all poses.
+    pub fn reset(&mut self) {
+        self.started = false;
     }
 
     /// Whether there are any at this pose.
@@ -96,8 +147,9 @@ impl FreeDirections {
 
     /// Leaves of a torque `(nv,)`, free of bias, what is not in free directions, by least squares in the metric of a
     /// covariance; returns its `r' S^-1 r` and the number of directions taken away. A stop's torque is free only inward.
-    pub fn leave(&mut self, whitening: &mut Whitening, torque: &mut [f64]) -> (f64, usize) {
-        let Self { nv, points, columns, inward, basis, rank, .. } = self;
+    /// `which` torque: 0 for the one that is reported, from 1 on those of the bank.
+    pub fn leave(&mut self, which: usize, whitening: &mut Whitening, torque: &mut [f64]) -> (f64, usize) {
+        let Self { nv, lagged, inward, basis, rank, .. } = self;
         let nv = *nv;
         whitening.squared_norm(torque);
         *rank = 0;
@@ -106,7 +158,7 @@ impl FreeDirections {
                 add(whitening, basis, rank, nv, |j| if j == k { 1.0 } else { 0.0 });
             }
         }
-        for column in columns[..3 * points.len() * nv].chunks_exact(nv) {
+        for column in lagged[which].columns.chunks_exact(nv) {
             add(whitening, basis, rank, nv, |j| column[j]);
         }
         let whitened = whitening.whitened_mut();
@@ -198,8 +250,8 @@ mod tests {
     fn free(robot: &Robot, q: &[f64], wanted: &[(String, [f64; 3])], inward: [f64; 7]) -> FreeDirections {
         let mut kinematics = Kinematics::new(robot);
         kinematics.set_configuration(robot, q);
-        let mut free = FreeDirections::new(robot, wanted).expect("known links");
-        free.set_pose(robot, &kinematics, &inward);
+        let mut free = FreeDirections::new(robot, wanted, &[50.0; 7], &[]).expect("known links");
+        free.set_pose(robot, &kinematics, &inward, 1e-3, true);
         free
     }
 
@@ -217,13 +269,13 @@ mod tests {
         let wanted = torque(link, local, Vector3::new(30.0, -10.0, 5.0));
         let mut whitening = whitening();
         let mut left = wanted.as_slice().to_vec();
-        let (statistic, rank) = free.leave(&mut whitening, &mut left);
+        let (statistic, rank) = free.leave(0, &mut whitening, &mut left);
         assert!(statistic < 1e-12 && rank == 3 && left.iter().all(|torque| torque.abs() < 1e-9), "{left:?}");
         let other = torque(robot.link("link_4").expect("a link"), [0.0; 3], Vector3::new(0.0, 0.0, 20.0));
         let mut both = (&wanted + &other).as_slice().to_vec();
         let mut alone = other.as_slice().to_vec();
-        let (statistic, _) = free.leave(&mut whitening, &mut both);
-        let (expected, _) = free.leave(&mut whitening, &mut alone);
+        let (statistic, _) = free.leave(0, &mut whitening, &mut both);
+        let (expected, _) = free.leave(0, &mut whitening, &mut alone);
         assert!(expected > 1.0 && (statistic / expected - 1.0).abs() < 1e-9);
         assert!(both.iter().zip(&alone).all(|(a, b)| (a - b).abs() < 1e-9));
     }
@@ -236,9 +288,9 @@ mod tests {
         let mut free = free(&robot, &[0.4; 7], &[], inward);
         let mut whitening = whitening();
         let mut stop = [0.0, 0.0, 0.0, -9.0, 0.0, 0.0, 0.0];
-        assert!(free.leave(&mut whitening, &mut stop).0 < 1e-12 && stop[3] == 0.0);
+        assert!(free.leave(0, &mut whitening, &mut stop).0 < 1e-12 && stop[3] == 0.0);
         let mut push = [0.0, 0.0, 0.0, 9.0, 0.0, 0.0, 0.0];
-        assert!(free.leave(&mut whitening, &mut push).0 > 1.0 && (push[3] - 9.0).abs() < 1e-12);
+        assert!(free.leave(0, &mut whitening, &mut push).0 > 1.0 && (push[3] - 9.0).abs() < 1e-12);
     }
 
     #[test]
@@ -254,8 +306,41 @@ mod tests {
     fn points_on_nothing_are_refused() {
         let robot = Robot::example_arm();
         for wanted in [("nothing".to_string(), [0.0; 3]), ("link_7".to_string(), [f64::NAN; 3])] {
-            let error = FreeDirections::new(&robot, &[wanted]).unwrap_err().to_string();
+            let error = FreeDirections::new(&robot, &[wanted], &[50.0; 7], &[]).unwrap_err().to_string();
             assert!(error.starts_with("wanted_contacts: "), "{error}");
         }
+    }
+    #[test]
+    fn a_force_that_lasts_stays_free_while_the_robot_moves() {
+        let robot = Robot::example_arm();
+        let wanted = [("link_7".to_string(), [0.02, 0.01, 0.1])];
+        let mut free = FreeDirections::new(&robot, &wanted, &[50.0; 7], &[8.0]).expect("known links");
+        let mut kinematics = Kinematics::new(&robot);
+        let force = Vector3::new(20.0, -10.0, 20.0);
+        let mut torques = [[0.0; 7]; 2];
+        for tick in 0..500 {
+            let phase = 2e-3 * f64::from(tick);
+            let q = [0.3 + phase, 0.8, -0.4, 0.9 - phase, 0.5, 0.7, 0.0];
+            kinematics.set_configuration(&robot, &q);
+            free.set_pose(&robot, &kinematics, &[0.0; 7], 1e-3, true);
+            for k in 0..7 {
+                let now: f64 = (0..3).map(|axis| free.columns[axis * 7 + k] * force[axis]).sum();
+                for (torque, gain) in torques.iter_mut().zip([50.0, 8.0]) {
+                    let decay = if tick == 0 { 0.0 } else { f64::exp(-gain * 1e-3) };
+                    torque[k] = now + decay * (torque[k] - now);
+                }
+            }
+        }
+        let mut whitening = whitening();
+        for (which, torque) in torques.iter_mut().enumerate() {
+            assert!(torque.iter().any(|torque| torque.abs() > 5.0));
+            assert!(free.leave(which, &mut whitening, torque).0 < 1e-12);
+        }
+        // The torque behind one gain is none of the other's.
+        let mut other = torques;
+        for k in 0..7 {
+            other[1][k] = (0..3).map(|axis| free.columns[axis * 7 + k] * force[axis]).sum();
+        }
+        assert!(free.leave(1, &mut whitening, &mut other[1]).0 > 1.0);
     }
 }

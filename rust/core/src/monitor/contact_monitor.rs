@@ -116,15 +116,20 @@ impl ContactMonitor {
         let mut monitor = Self {
             clock: SampleClock::new(options.dt),
             source: None,
-            observer,
             detector,
             release,
             sensing: (!options.isolation.sensors.is_empty()).then_some(sensing),
             bias: options.bias_time_constant.filter(|_| test.is_none()).map(tracker).transpose()?,
+            free: FreeDirections::new(
+                &robot,
+                &options.wanted_points,
+                observer.gain(),
+                test.as_ref().map_or(&[], ContactTest::gains),
+            )?,
+            observer,
             test,
             scale: scale_of(&threshold),
             limits: JointLimits::new(&robot),
-            free: FreeDirections::new(&robot, &options.wanted_points)?,
             threshold,
             report: ContactReport {
                 links: Vec::with_capacity(robot.touchable_links().len()),
@@ -191,7 +196,8 @@ impl ContactMonitor {
     /// Bias, detection and isolation of what was sensed; `new` is false where the step brought no new torque.
     pub(super) fn judge(&mut self, step: Step, new: bool) -> &ContactReport {
         let length = step.length(self.clock.dt());
-        self.free.set_pose(&self.robot, self.observer.kinematics(), self.limits.inward());
+        let inward = self.limits.inward();
+        self.free.set_pose(&self.robot, self.observer.kinematics(), inward, length, new);
         let felt = self.detector.sense(self.sensing.as_ref().map_or(&[], Sensing::unwanted));
         if self.test.is_some() {
             self.test_all_joints(step, new, felt);
@@ -283,6 +289,7 @@ impl ContactMonitor {
     pub fn reset(&mut self) {
         self.forget_source();
         self.observer.reset();
+        self.free.reset();
         self.detector.reset();
         self.report.isolation.clear();
         self.report.external_torque.fill(0.0);

@@ -39,6 +39,7 @@ impl ContactMonitor {
             return Err(error);
         }
         if self.source.replace(Source::External).is_none() {
+            self.free.set_gain(|_| f64::INFINITY);
             if let Some(sensing) = &mut self.sensing {
                 sensing.follow_without_lag();
             }

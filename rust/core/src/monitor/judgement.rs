@@ -53,7 +53,7 @@ impl ContactMonitor {
         let Some(bias) = bias else {
             leave_out(sensing, collision_torque, None);
             if free.any() {
-                free.leave(scale, collision_torque);
+                free.leave(0, scale, collision_torque);
             }
             return true;
         };
@@ -61,7 +61,7 @@ impl ContactMonitor {
         leave_out(sensing, collision_torque, Some(bias.bias()));
         if free.any() {
             collision_torque.iter_mut().zip(bias.bias()).for_each(|(torque, bias)| *torque -= bias);
-            free.leave(scale, collision_torque);
+            free.leave(0, scale, collision_torque);
             collision_torque.iter_mut().zip(bias.bias()).for_each(|(torque, bias)| *torque += bias);
         }
         let ready = bias.ready();

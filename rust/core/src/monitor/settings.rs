@@ -104,7 +104,10 @@ impl ContactMonitor {
     }
 
     fn follow_gains(&mut self) -> Result<()> {
-        let Self { sensing, observer, options, .. } = self;
+        let Self { sensing, observer, options, free, .. } = self;
+        if self.source != Some(Source::External) {
+            free.set_gain(|k| observer.gain()[k]);
+        }
         let Some(sensing) = sensing else { return Ok(()) };
         sensing.set_gain(observer.gain(), options.wrench_gain)?;
         if self.source == Some(Source::External) {

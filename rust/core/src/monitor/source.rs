@@ -66,8 +66,13 @@ impl ContactMonitor {
 
     /// The next torques may come from another source.
     pub(super) fn forget_source(&mut self) {
-        if let (Some(Source::External), Some(sensing)) = (self.source.take(), &mut self.sensing) {
-            sensing.follow_gain(self.observer.gain());
+        if self.source.take() != Some(Source::External) {
+            return;
+        }
+        let gain = self.observer.gain();
+        self.free.set_gain(|k| gain[k]);
+        if let Some(sensing) = &mut self.sensing {
+            sensing.follow_gain(gain);
         }
     }
 }

@@ -47,6 +47,11 @@ impl ObserverBank {
         &self.torques
     }
 
+    /// All gains (1/s).
+    pub fn gains(&self) -> &[f64] {
+        &self.gains
+    }
+
     /// The first gain (1/s).
     pub fn slowest_gain(&self) -> f64 {
         self.gains[0]
