@@ -52,6 +52,7 @@ impl PyNoiseModel {
     #[pyo3(signature = (*, torque=None, velocity=None, relative=None, model=None, model_time=None,
                         friction=None, bias=None),
            text_signature = "(*, torque=0.05, velocity=0.0, relative=0.03, model=0.1, model_time=1.0, friction=0.0, bias=0.0)")]
+    #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
         py: Python<'_>,
         torque: Option<&Bound<'_, PyAny>>,

@@ -155,8 +155,11 @@ pub fn sensor_names(object: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
     names("wanted_contacts", "sensors", object)
 }
 
-/// Where contacts are meant: names of sensors, and links with points on them.
-pub fn wanted_places(object: &Bound<'_, PyAny>) -> PyResult<(Vec<String>, Vec<(String, [f64; 3])>)> {
+/// Names of sensors, and links with points on them.
+type WantedPlaces = (Vec<String>, Vec<(String, [f64; 3])>);
+
+/// Where contacts are meant.
+pub fn wanted_places(object: &Bound<'_, PyAny>) -> PyResult<WantedPlaces> {
     let py = object.py();
     let wanted = || {
         let text = "expected an iterable of the names of sensors and of pairs (link, point_local)";

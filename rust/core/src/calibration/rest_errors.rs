@@ -76,8 +76,8 @@ pub(super) fn rest_errors(
     let white = white_variance(robot, log, parts, &noise, gains[0], step)?;
     let spacing = SPACING.max(step);
     let event_gain = gains[1.min(gains.len() - 1)];
-    for j in 0..robot.nv() {
-        let (model, time) = slow_errors(&stretches, j, white[j], gains[0]).unwrap_or((0.0, TIMES[0]));
+    for (j, white) in white.into_iter().enumerate() {
+        let (model, time) = slow_errors(&stretches, j, white, gains[0]).unwrap_or((0.0, TIMES[0]));
         noise.model[j] = model.sqrt();
         noise.model_time[j] = time;
     }

@@ -101,7 +101,7 @@ impl FreeDirections {
                 (0..3).for_each(|axis| columns[axis * nv + k] = column[axis]);
             });
         }
-        if self.points.is_empty() || !(new || !self.started) {
+        if self.points.is_empty() || (!new && self.started) {
             return;
         }
         for Lagged { gain, columns } in &mut self.lagged {
@@ -239,7 +239,7 @@ mod tests {
     fn whitening() -> Whitening {
         let mut whitening = Whitening::new(7);
         // A covariance that is none of independent joints.
-        whitening.set(|i, row| {
+        whitening.advance(|i, row| {
             row.iter_mut().enumerate().for_each(|(j, value)| {
                 *value = 0.3_f64.powi((i - j) as i32) * (1.0 + i as f64) * (1.0 + j as f64) * 0.01;
             });
@@ -338,8 +338,8 @@ mod tests {
         }
         // The torque behind one gain is none of the other's.
         let mut other = torques;
-        for k in 0..7 {
-            other[1][k] = (0..3).map(|axis| free.columns[axis * 7 + k] * force[axis]).sum();
+        for (k, torque) in other[1].iter_mut().enumerate() {
+            *torque = (0..3).map(|axis| free.columns[axis * 7 + k] * force[axis]).sum();
         }
         assert!(free.leave(1, &mut whitening, &mut other[1]).0 > 1.0);
     }

@@ -61,7 +61,8 @@ pub(crate) fn survival(degrees: usize, value: f64) -> f64 {
 
 /// The logarithm of `Gamma(n / 2)`.
 fn ln_gamma_of_half(n: usize) -> f64 {
-    let (mut a, start) = if n % 2 == 0 { (1.0, 0.0) } else { (0.5, 0.5 * std::f64::consts::PI.ln()) };
+    let (mut a, start) =
+        if n.is_multiple_of(2) { (1.0, 0.0) } else { (0.5, 0.5 * std::f64::consts::PI.ln()) };
     let mut sum = start;
     while a < 0.5 * n as f64 - 0.25 {
         sum += f64::ln(a);
