@@ -253,6 +253,7 @@ impl ContactTest {
         self.robot = Arc::clone(robot);
         self.payload.change(loads);
         // All covariances hold the change at once.
+        self.signals.iter_mut().for_each(|signal| signal.whitening.reset());
         self.started = false;
     }
 

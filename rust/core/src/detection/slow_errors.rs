@@ -124,3 +124,63 @@ impl SlowErrors {
         (self.age, self.lost, self.unknown) = (0.0, 0.0, 1.0);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DT: f64 = 1e-3;
+
+    /// Two joints with errors of 0.1 Nm over 10 s, and 0.2 Nm from start to start.
+    fn errors() -> SlowErrors {
+        let two = |value: f64| vec![value; 2];
+        let noise = SlowNoise {
+            model: two(0.01),
+            model_time: two(10.0),
+            bias: two(0.04),
+            relative: two(0.05),
+            is_force: vec![false; 2],
+        };
+        SlowErrors::new(noise, 3.0)
+    }
+
+    fn follow(errors: &mut SlowErrors, torque: [f64; 2], seconds: f64) {
+        (0..(seconds / DT) as usize).for_each(|_| errors.follow(&torque, DT));
+    }
+
+    #[test]
+    fn what_is_followed_becomes_certain_and_what_is_not_uncertain_again() {
+        let mut errors = errors();
+        let at_start = errors.variance(0, 1.0);
+        assert!((at_start - (0.04 + 0.01 * (1.0 - 10.0 / 13.0))).abs() < 1e-12);
+        follow(&mut errors, [0.15, -0.1], 10.0);
+        assert!((errors.bias()[0] - 0.15).abs() < 0.01 && (errors.bias()[1] + 0.1).abs() < 0.01);
+        // Of an error of 10 s, a low-pass of 3 s leaves 3/13 of the variance.
+        assert!((errors.variance(0, 1.0) / (0.01 * 3.0 / 13.0) - 1.0).abs() < 0.05);
+        let torque = [0.15, -0.1];
+        (0..2000).for_each(|_| errors.lose(&torque, DT));
+        let after_a_contact = errors.variance(0, 1.0);
+        (0..60_000).for_each(|_| errors.lose(&torque, DT));
+        assert!(after_a_contact < errors.variance(0, 1.0) && errors.bias()[0].abs() < 0.01);
+        assert!((errors.variance(0, 1.0) - (0.04 + 0.01 * (1.0 + 10.0 / 13.0))).abs() < 2e-3);
+    }
+
+    #[test]
+    fn a_held_force_does_not_become_the_bias() {
+        let mut errors = errors();
+        follow(&mut errors, [20.0, 0.0], 60.0);
+        assert_eq!(errors.bias()[0], 4.0 * 0.05_f64.sqrt());
+    }
+
+    #[test]
+    fn a_joint_keeps_a_share_of_its_load_up_to_what_all_err_by() {
+        let mut errors = errors();
+        follow(&mut errors, [0.0, 0.0], 20.0);
+        let before = errors.variance(1, 0.0);
+        errors.lose(&[100.0, 2.0], DT);
+        let kept = |j: usize, errors: &SlowErrors| errors.variance(j, 0.0) - before;
+        assert!((kept(1, &errors) - 0.01).abs() < 1e-3, "5 % of 2 Nm");
+        assert!((kept(0, &errors) - 0.1).abs() < 1e-3, "not 5 Nm, but what both joints err by");
+        assert!(errors.allows(&[0.9, 0.0], |_| 0.1) && !errors.allows(&[1.1, 0.0], |_| 0.1));
+    }
+}
