@@ -311,7 +311,7 @@ def _short(link: str) -> str:
 
 def _estimate(hit: HitResult) -> str:
     if hit.named is None:
-        return "not detected"
+        return "not detected" if hit.delay is None else "no link named"
     if hit.point_error is not None:
         return f"{1e3 * hit.point_error:.1f} mm off"
     return "link only" if hit.link_right else f"wrong link: {_short(hit.named)}"
