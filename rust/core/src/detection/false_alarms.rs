@@ -7,8 +7,8 @@ const ROUNDS: usize = 60;
 /// No Gaussian error is so many squared standard deviations large.
 const LARGEST: f64 = 1e3;
 
-/// How often contact-free motion, on blocks of a log that were not fitted, made a statistic large: beyond `level` at
-/// [`PEAKS`] a second, and more rarely by a factor of e for each `scale` more.
+/// How often contact-free motion, on blocks of a log that were not fitted, made a statistic large: beyond `level` 0.8 times a
+/// second, and more rarely by a factor of e for each `scale` more.
 ///
 /// ```
 /// use contactsense::calibration::Tail;
@@ -22,7 +22,7 @@ const LARGEST: f64 = 1e3;
 pub struct Tail {
     /// Of the observer whose torques the statistic is of (1/s).
     pub gain: f64,
-    /// The statistic that was exceeded at [`PEAKS`] a second.
+    /// The statistic that was exceeded 0.8 times a second.
     pub level: f64,
     /// By so much more at a rate that is a factor of e lower.
     pub scale: f64,
