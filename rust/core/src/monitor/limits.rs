@@ -3,10 +3,10 @@
 use crate::robot::{JointKind, Robot, WORLD};
 
 /// Nearer than this a joint is at its limit: stops yield, and limits are rounded (rad; m for sliding joints),
-const NEAR: f64 = 0.02;
-const NEAR_SLIDING: f64 = 0.005;
+const NEAR: f64 = 0.005;
+const NEAR_SLIDING: f64 = 0.001;
 /// or nearer than this share of its range, if that is less.
-const NEAR_SHARE: f64 = 0.02;
+const NEAR_SHARE: f64 = 0.002;
 
 /// The limits of one joint.
 #[derive(Debug, Clone, Copy)]
