@@ -1780,7 +1780,7 @@ class ContactReport:
     def limited_joints(self) -> tuple[str, ...]:
         """Names of the joints at a limit of their position whose stop pushes them inward, which is no contact.
 
-        Within 0.005 rad, 1 mm for sliding joints, of the limit, and at most 0.2 % of the range.
+        Within 0.005 rad, 1 mm for sliding joints, and at most 0.2 % of the range, or ten times that beyond the limit.
         """
     @property
     def acceleration(self) -> NDArray[np.float64]:

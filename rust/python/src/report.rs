@@ -151,7 +151,7 @@ impl PyContactReport {
 
     /// Names of the joints at a limit of their position whose stop pushes them inward, which is no contact.
     ///
-    /// Within 0.005 rad, 1 mm for sliding joints, of the limit, and at most 0.2 % of the range.
+    /// Within 0.005 rad, 1 mm for sliding joints, and at most 0.2 % of the range, or ten times that beyond the limit.
     #[getter]
     fn limited_joints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.report.limited_joints.iter().map(|joint| &self.names.joints[*joint]))

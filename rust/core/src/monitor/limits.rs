@@ -2,11 +2,13 @@
 
 use crate::robot::{JointKind, Robot, WORLD};
 
-/// Nearer than this a joint is at its limit: stops yield, and limits are rounded (rad; m for sliding joints),
+/// Nearer than this a joint is at its limit: limits are rounded (rad; m for sliding joints), or nearer than a share of its
+/// range, if that is less.
 const NEAR: f64 = 0.005;
 const NEAR_SLIDING: f64 = 0.001;
-/// or nearer than this share of its range, if that is less.
 const NEAR_SHARE: f64 = 0.002;
+/// A stop yields by so many times that. A joint farther beyond its limit has another one than the description says.
+const YIELD: f64 = 10.0;
 
 /// The limits of one joint.
 #[derive(Debug, Clone, Copy)]
@@ -15,9 +17,26 @@ struct Limits {
     joint: usize,
     q: usize,
     v: usize,
-    /// From here on upwards and downwards it is at a limit.
-    upper: f64,
     lower: f64,
+    upper: f64,
+    /// Before and beyond a limit, the joint is at it.
+    near: f64,
+    beyond: f64,
+}
+
+impl Limits {
+    /// The sign of a stop's torque at a position, zero where the joint is at no limit.
+    #[inline]
+    fn inward(&self, position: f64) -> f64 {
+        let is_at = |past: f64| past >= -self.near && past <= self.beyond;
+        if is_at(position - self.upper) {
+            -1.0
+        } else if is_at(self.lower - position) {
+            1.0
+        } else {
+            0.0
+        }
+    }
 }
 
 /// Which joints are at a limit.
@@ -44,8 +63,10 @@ impl JointLimits {
                 joint: index - 1,
                 q: body.idx_q,
                 v: body.idx_v,
-                upper: upper - near,
-                lower: lower + near,
+                lower,
+                upper,
+                near,
+                beyond: YIELD * near,
             })
         };
         JointLimits {
@@ -58,14 +79,7 @@ impl JointLimits {
     #[inline]
     pub fn set_configuration(&mut self, q: &[f64]) {
         for limits in &self.limits {
-            let position = q[limits.q];
-            self.inward[limits.v] = if position >= limits.upper {
-                -1.0
-            } else if position <= limits.lower {
-                1.0
-            } else {
-                0.0
-            };
+            self.inward[limits.v] = limits.inward(q[limits.q]);
         }
     }
 
@@ -74,9 +88,32 @@ impl JointLimits {
     pub fn inward(&self) -> &[f64] {
         &self.inward
     }
+
     /// The joints, counted without the world, that a stop pushes inward by more than a threshold `(nv,)`.
     pub fn pushed<'a>(&'a self, torque: &'a [f64], threshold: &'a [f64]) -> impl Iterator<Item = usize> + 'a {
         let is_pushed = |limits: &&Limits| self.inward[limits.v] * torque[limits.v] > threshold[limits.v];
         self.limits.iter().filter(is_pushed).map(|limits| limits.joint)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_joint_far_beyond_a_limit_is_at_none() {
+        let robot = Robot::example_arm();
+        let mut limits = JointLimits::new(&robot);
+        let one = limits.limits[0];
+        for (share, sign) in [(-1.5, 0.0), (-0.5, -1.0), (0.0, -1.0), (9.0, -1.0), (11.0, 0.0)] {
+            let past = share * one.near;
+            let mut q = vec![0.0; robot.nq()];
+            q[one.q] = one.upper + past;
+            limits.set_configuration(&q);
+            assert_eq!(limits.inward()[one.v], sign, "{past}");
+            q[one.q] = one.lower - past;
+            limits.set_configuration(&q);
+            assert_eq!(limits.inward()[one.v], -sign, "{past}");
+        }
     }
 }
