@@ -102,18 +102,10 @@ mod tests {
 
     #[test]
     fn a_joint_far_beyond_a_limit_is_at_none() {
-        let robot = Robot::example_arm();
-        let mut limits = JointLimits::new(&robot);
-        let one = limits.limits[0];
-        for (share, sign) in [(-1.5, 0.0), (-0.5, -1.0), (0.0, -1.0), (9.0, -1.0), (11.0, 0.0)] {
-            let past = share * one.near;
-            let mut q = vec![0.0; robot.nq()];
-            q[one.q] = one.upper + past;
-            limits.set_configuration(&q);
-            assert_eq!(limits.inward()[one.v], sign, "{past}");
-            q[one.q] = one.lower - past;
-            limits.set_configuration(&q);
-            assert_eq!(limits.inward()[one.v], -sign, "{past}");
+        let limits = Limits { joint: 0, q: 0, v: 0, lower: -1.0, upper: 2.0, near: 0.005, beyond: 0.05 };
+        for (past, sign) in [(-0.006, 0.0), (-0.004, -1.0), (0.0, -1.0), (0.04, -1.0), (0.06, 0.0)] {
+            assert_eq!(limits.inward(limits.upper + past), sign, "{past}");
+            assert_eq!(limits.inward(limits.lower - past), -sign, "{past}");
         }
     }
 }
