@@ -6,13 +6,13 @@ import json
 
 import numpy as np
 import pytest
-from robots import ATLAS, BY_NAME, RobotFile
+from robots import ATLAS, BY_NAME, RobotFile, parameters
 from sensor_models import SensedModel, moving_and_fixed_links
 
 import contactsense as cs
 from contactsense.sim import SimulatedRobot
 
-FILES = [pytest.param(BY_NAME["panda"], id="panda"), pytest.param(ATLAS[1], id="atlas")]
+FILES = parameters([BY_NAME["panda"], BY_NAME["talos"], ATLAS[1]])
 
 
 def with_offsets(sensors: list[cs.ForceTorqueSensor], offsets: np.ndarray) -> list[cs.ForceTorqueSensor]:
