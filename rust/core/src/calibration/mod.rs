@@ -10,6 +10,7 @@ mod false_alarms;
 mod fingerprint;
 mod folds;
 mod hysteresis;
+mod judged;
 mod lead;
 mod log;
 mod noise;

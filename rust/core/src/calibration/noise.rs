@@ -4,18 +4,16 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::judged::Judged;
 use super::log::Log;
-use super::torque_model::TorqueModel;
+use crate::detection::LARGEST_STEP;
 use crate::error::Result;
-use crate::observer::MomentumObserver;
+use crate::observer::{ObserverBank, Step};
 use crate::robot::Robot;
 use crate::torque::NoiseModel;
-use crate::Sample;
 
 /// Gains of the observers whose outputs are looked at (1/s): slow to fast.
 const GAINS: [f64; 4] = [2.0, 8.0, 50.0, 200.0];
-/// The largest step of an observer, as a share of its time constant, at which its output still means something.
-const LARGEST_STEP: f64 = 0.6;
 /// So many time constants after a start an observer has forgotten it.
 const SETTLED: f64 = 4.0;
 /// Share of the largest differences that count as motion or contact, not noise.
@@ -61,14 +59,6 @@ fn differences(value: &impl Fn(usize) -> f64, count: usize, order: usize) -> f64
     (mean / TRIMMED_SQUARE / growth).sqrt()
 }
 
-/// A part of a log and the model that was fitted without it.
-pub(super) struct Judged {
-    /// None where the torques are external ones.
-    pub robot: Option<Arc<Robot>>,
-    pub torque: TorqueModel,
-    pub rows: std::ops::Range<usize>,
-}
-
 /// The mean squares of the observers' outputs, by gain: `(gain, [by joint])`, and mean squares of the mass matrix.
 struct Spread {
     gains: Vec<f64>,
@@ -80,7 +70,7 @@ struct Spread {
 
 /// The noise model that the parts of a log show; `skipped` says which rows have a contact.
 pub(super) fn estimate(
-    robot: &Robot,
+    robot: &Arc<Robot>,
     log: &Log<'_>,
     parts: &[Judged],
     skipped: &[bool],
@@ -97,7 +87,13 @@ pub(super) fn estimate(
     Ok(split(&spread, torque, &velocity.collect::<Vec<_>>(), step))
 }
 
-fn spread(robot: &Robot, log: &Log<'_>, parts: &[Judged], skipped: &[bool], step: f64) -> Result<Spread> {
+fn spread(
+    robot: &Arc<Robot>,
+    log: &Log<'_>,
+    parts: &[Judged],
+    skipped: &[bool],
+    step: f64,
+) -> Result<Spread> {
     let nv = robot.nv();
     let mut gains: Vec<f64> = GAINS.into_iter().filter(|gain| gain * step <= LARGEST_STEP).collect();
     if gains.is_empty() {
@@ -106,44 +102,23 @@ fn spread(robot: &Robot, log: &Log<'_>, parts: &[Judged], skipped: &[bool], step
     let mut squares = vec![DVector::zeros(nv); gains.len()];
     let mut counts = vec![0.0; gains.len()];
     let (mut mass, mut poses) = (DMatrix::zeros(nv, nv), 0.0);
-    let (mut v, mut tau) = (vec![0.0; nv], vec![0.0; nv]);
     for part in parts {
-        for (which, &gain) in gains.iter().enumerate() {
-            let observer = |robot: &Arc<Robot>| MomentumObserver::new(Arc::clone(robot), step, &[gain]);
-            let mut observer = part.robot.as_ref().map(observer).transpose()?;
-            let mut low_passed = vec![0.0; nv];
-            let settled = SETTLED / gain;
-            let mut torque = part.torque.clone();
-            let mut since = 0.0;
-            for row in part.rows.clone() {
-                let dt = if row == part.rows.start { step } else { log.time[row] - log.time[row - 1] };
-                if dt > super::LONGEST_STEPS * step || skipped[row] {
-                    observer.iter_mut().for_each(MomentumObserver::reset);
-                    low_passed.fill(0.0);
-                    torque.reset();
-                    since = 0.0;
-                    continue;
-                }
-                tau.copy_from_slice(log.tau_of(row));
-                v.copy_from_slice(log.v_of(robot, row));
-                torque.correct(dt, &mut v, &mut tau);
-                let external = match &mut observer {
-                    Some(observer) => observer.update(&Sample::new(log.q_of(robot, row), &v, &tau).dt(dt))?,
-                    None => {
-                        let new = 1.0 - (-gain * dt).exp();
-                        low_passed.iter_mut().zip(&tau).for_each(|(low, tau)| *low += new * (tau - *low));
-                        &low_passed[..]
-                    }
-                };
-                since += dt;
-                if since > settled {
-                    for (sum, r) in squares[which].iter_mut().zip(external) {
-                        *sum += r * r;
-                    }
+        let mut bank = ObserverBank::new(nv, step, &gains);
+        let mut since = 0.0;
+        part.each_row(robot, log, skipped, step, |row| {
+            if row.starts {
+                bank.reset();
+                since = 0.0;
+            }
+            bank.advance(row.unexplained, Step::Of(row.dt));
+            since += row.dt;
+            for (which, (gain, external)) in gains.iter().zip(bank.torques()).enumerate() {
+                if since > SETTLED / gain {
+                    squares[which].iter_mut().zip(external).for_each(|(sum, r)| *sum += r * r);
                     counts[which] += 1.0;
                 }
             }
-        }
+        })?;
         // The mass matrix changes slowly: a few poses say enough.
         let Some(corrected) = &part.robot else { continue };
         let stride = (part.rows.len() / 20).max(1);

@@ -3,17 +3,16 @@
 
 use std::sync::Arc;
 
+use super::judged::Judged;
 use super::log::Log;
-use super::noise::Judged;
 use crate::detection::{
     gaussian_level, ContactTest, FrictionErrors, Level, Tail, FOLLOW_TIME, GAINS, LARGEST_STEP, PEAK_TIME,
     SLOW,
 };
 use crate::error::Result;
-use crate::observer::{MomentumObserver, ObserverBank, Step};
-use crate::robot::{Kinematics, Robot};
+use crate::observer::{ObserverBank, Step};
+use crate::robot::Robot;
 use crate::torque::NoiseModel;
-use crate::Sample;
 
 /// Time between the samples that are kept (s).
 const SPACING: f64 = 0.01;
@@ -98,55 +97,7 @@ pub(super) fn rest_errors(
     Ok((noise, tails))
 }
 
-/// What a row of a log tells detection.
-struct Told<'a> {
-    kinematics: &'a Kinematics,
-    velocity: &'a [f64],
-    /// The external torque before any low-pass; none in the first row of a stretch.
-    unexplained: Option<&'a [f64]>,
-    /// Since the row before (s).
-    dt: f64,
-    starts: bool,
-}
-
 impl Judged {
-    /// Calls `told` with each row without contact.
-    fn each_row(
-        &self,
-        robot: &Arc<Robot>,
-        log: &Log<'_>,
-        skipped: &[bool],
-        step: f64,
-        mut told: impl FnMut(&Told<'_>),
-    ) -> Result<()> {
-        let source = self.robot.as_ref().unwrap_or(robot);
-        let mut observer = MomentumObserver::new(Arc::clone(source), step, &[GAINS[0]])?;
-        let mut torque = self.torque.clone();
-        let (mut v, mut tau) = (vec![0.0; robot.nv()], vec![0.0; robot.nv()]);
-        let mut starts = true;
-        for index in self.rows.clone() {
-            let first = index == self.rows.start;
-            let dt = if first { step } else { log.time[index] - log.time[index - 1] };
-            if skipped[index] || dt > super::LONGEST_STEPS * step {
-                observer.reset();
-                torque.reset();
-                starts = true;
-                continue;
-            }
-            tau.copy_from_slice(log.tau_of(index));
-            v.copy_from_slice(log.v_of(robot, index));
-            torque.correct(if starts { 0.0 } else { dt }, &mut v, &mut tau);
-            observer.advance(&Sample::new(log.q_of(robot, index), &v, &tau), Step::Of(dt));
-            let unexplained = match self.robot {
-                Some(_) => observer.unexplained(),
-                None => Some(&tau[..]).filter(|_| !starts),
-            };
-            told(&Told { kinematics: observer.kinematics(), velocity: &v, unexplained, dt, starts });
-            starts = false;
-        }
-        Ok(())
-    }
-
     fn stretches(
         &self,
         robot: &Arc<Robot>,

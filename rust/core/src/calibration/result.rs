@@ -9,8 +9,9 @@ use super::calibration::{armature, body_inertia};
 use super::contacts::stretches;
 use super::folds::mean_square;
 use super::hysteresis::WIDTHS;
+use super::judged::Judged;
 use super::log::Log;
-use super::noise::{estimate, Judged, RELATIVE};
+use super::noise::{estimate, RELATIVE};
 use super::notes::{notes, JointFacts};
 use super::rest_errors::rest_errors;
 use super::torque_model::{Friction, REVERSALS};
@@ -191,11 +192,12 @@ impl Fit {
             })
         };
         let parts = solutions.iter().enumerate().map(part).collect::<Result<Vec<Judged>>>()?;
-        let noise = estimate(robot, log, &parts, &skipped, step)?;
+        let shared = Arc::new(robot.clone());
+        let noise = estimate(&shared, log, &parts, &skipped, step)?;
         // No observer of ours differentiates velocities into an external torque.
         let velocity = if options.torque_is_external { vec![0.0] } else { noise.velocity };
         let noise = NoiseModel { velocity, relative: self.relative(robot.nv()), ..noise };
-        rest_errors(&Arc::new(robot.clone()), log, &parts, &skipped, step, coulomb, noise)
+        rest_errors(&shared, log, &parts, &skipped, step, coulomb, noise)
     }
 
     /// The rows of the log that belong to a block of the fit.
