@@ -14,6 +14,7 @@ pub mod diagnosis;
 pub mod error;
 pub mod isolation;
 pub mod load;
+pub mod map;
 mod math;
 pub mod monitor;
 pub mod observer;

@@ -108,7 +108,7 @@ impl PyMode {
     }
 }
 
-const ATTRIBUTES: [&str; 16] = [
+pub const ATTRIBUTES: [&str; 16] = [
     "contact",
     "event",
     "link",
@@ -139,7 +139,7 @@ const ATTRIBUTES: [&str; 16] = [
 ///     ContactEstimate(no contact, event='none')
 ///     >>> particle_filter.update(np.full(7, 0.4), [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0]).ambiguous
 ///     True
-#[pyclass(frozen, name = "ContactEstimate", module = "contactsense")]
+#[pyclass(frozen, subclass, name = "ContactEstimate", module = "contactsense")]
 pub struct PyContactEstimate {
     names: Arc<Names>,
     /// Those that are looked on.

@@ -12,6 +12,7 @@ mod calibration_parts;
 mod columns;
 mod compensator;
 mod contact;
+mod contact_map;
 mod description;
 mod diagnosis;
 mod errors;
@@ -78,5 +79,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<particle::Particles>()?;
     module.add_class::<estimate::PyContactEstimate>()?;
     module.add_class::<estimate::PyMode>()?;
+    module.add_class::<contact_map::PyContactMap>()?;
+    module.add_class::<contact_map::PyMapEstimate>()?;
     Ok(())
 }

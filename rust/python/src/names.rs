@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 /// The names of a robot's links and joints and of its sensors, shared by all results of one object: a result needs no
 /// robot, and can be pickled without one.
-#[derive(Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Names {
     pub links: Vec<String>,
     pub joints: Vec<String>,

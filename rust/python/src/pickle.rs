@@ -12,6 +12,7 @@ use serde::Serialize;
 use crate::calibration::PyCalibration;
 use crate::calibration_parts::{PyBodyInertia, PyJointFriction, PyPayload};
 use crate::contact::{PyCandidate, PyContact, PyIsolation};
+use crate::contact_map::PyMapEstimate;
 use crate::diagnosis::PyFinding;
 use crate::errors::{input, refused};
 use crate::estimate::{PyContactEstimate, PyMode};
@@ -67,6 +68,7 @@ pub fn _restore<'py>(
         "Isolation" => made(py, PyIsolation::from_content(read(content)?)),
         "ContactReport" => made(py, PyContactReport::from_content(read(content)?)),
         "ContactEstimate" => made(py, PyContactEstimate::from_content(read(content)?)),
+        "MapEstimate" => Ok(Py::new(py, PyMapEstimate::with_base(read(content)?))?.into_any()),
         "Mode" => made(py, PyMode::from_content(read(content)?)),
         "Calibration" => made(py, PyCalibration(read(content)?)),
         "JointFriction" => made(py, PyJointFriction::from_content(read(content)?)),

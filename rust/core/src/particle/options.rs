@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use super::schedule::Schedule;
 use crate::error::{Error, Result};
-use crate::robot::{Robot, LARGEST, WORLD};
+use crate::robot::{Robot, LARGEST};
 use crate::torque::{ForceModel, NoiseModel, TorqueNoise, LEVEL};
 
 /// How a contact moves with the robot.
@@ -150,37 +150,7 @@ impl FilterOptions {
         }
         self.force_model.check()?;
         self.schedule.check()?;
-        let moving = |&index: &usize| robot.links()[index].body != WORLD;
-        let all: Vec<usize> = robot.touchable_links().iter().map(|link| link.get()).filter(moving).collect();
-        if all.is_empty() {
-            return Err(Error::input(
-                "robot",
-                "no link that moves has a surface; a particle filter needs one to look on",
-            ));
-        }
-        let Some(names) = &self.links else { return Ok(all) };
-        if names.is_empty() {
-            return Err(Error::input("links", "must name at least one link"));
-        }
-        let mut wanted = Vec::with_capacity(names.len());
-        for name in names {
-            let found = all.iter().copied().find(|&index| &robot.links()[index].name == name);
-            let Some(index) = found else {
-                let links: Vec<&str> = all.iter().map(|&index| robot.links()[index].name.as_str()).collect();
-                return Err(Error::input(
-                    "links",
-                    format!(
-                        "there is no link '{name}' that moves and has a surface; there are {}",
-                        links.join(", ")
-                    ),
-                ));
-            };
-            if !wanted.contains(&index) {
-                wanted.push(index);
-            }
-        }
-        wanted.sort_unstable();
-        Ok(wanted)
+        robot.contact_links(self.links.as_deref(), "a particle filter")
     }
 
     /// What the torques err by.

@@ -5,6 +5,7 @@ mod by_name;
 pub(crate) mod check;
 pub(crate) mod configuration;
 pub(crate) mod description;
+mod contact_links;
 mod dynamics;
 mod example;
 pub(crate) mod ids;

@@ -26,7 +26,7 @@ pub(crate) struct Frame {
     variables: Vec<usize>,
     /// `J J^T` of the columns (linear, angular) of all axes: the squared norm of a wrench's torques is
     /// `wrench^T gram wrench`, for a wrench at the link's origin in its frame.
-    gram: Matrix6<f64>,
+    pub(super) gram: Matrix6<f64>,
 }
 
 impl Frame {

@@ -6,6 +6,7 @@ mod force_model;
 mod frames;
 mod link_target;
 mod noise_model;
+mod push_likelihood;
 mod target;
 
 pub(crate) use error_variances::{ErrorVariances, SlowNoise};
@@ -15,4 +16,5 @@ pub use force_model::ForceModel;
 pub(crate) use frames::{Frame, Frames};
 pub use noise_model::NoiseModel;
 pub(crate) use noise_model::{largest, TorqueNoise, LEVEL};
+pub(crate) use push_likelihood::{ForcePrior, PlaceBlock, PushLikelihood, LANES};
 pub(crate) use target::Target;

@@ -1,0 +1,12 @@
+//! The posterior of one contact over all of a robot's surface (algorithm D4).
+
+mod contact_map;
+mod estimate;
+mod leaves;
+mod measurement;
+mod options;
+mod surface_samples;
+
+pub use contact_map::ContactMap;
+pub use estimate::MapEstimate;
+pub use options::MapOptions;

@@ -1,0 +1,103 @@
+//! Samples of the surface, evenly spread over each link, and enough of them on small links too.
+
+use nalgebra::Vector3;
+
+use crate::error::{Error, Result};
+use crate::robot::Robot;
+use crate::surface::SurfacePoint;
+use crate::torque::{PlaceBlock, LANES};
+
+/// So many points are drawn for one that is kept: those farthest from each other.
+const DRAWN: usize = 6;
+const SEED: u64 = 0;
+
+/// The samples of one link.
+#[derive(Debug, Clone)]
+pub(super) struct LinkSamples {
+    /// Index into the robot's links.
+    pub link: usize,
+    pub places: Vec<SurfacePoint>,
+    /// Area that each stands for (m^2).
+    pub areas: Vec<f64>,
+    /// The same places, the last one repeated to fill a block.
+    pub blocks: Vec<PlaceBlock>,
+}
+
+/// The samples of a robot.
+#[derive(Debug, Clone)]
+pub(super) struct SurfaceSamples {
+    pub links: Vec<LinkSamples>,
+    /// Of all links (m^2).
+    pub area: f64,
+    pub count: usize,
+}
+
+impl SurfaceSamples {
+    /// About `count` samples over the wanted links, the more the larger a link is, in proportion to the root of its area.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where none of the surface is exposed.
+    pub fn new(robot: &Robot, wanted: &[usize], count: usize) -> Result<Self> {
+        let surface = |index: usize| robot.links()[index].surface.as_ref();
+        let areas: Vec<f64> = wanted
+            .iter()
+            .map(|&index| surface(index).map_or(0.0, |surface| surface.exposed_area()))
+            .collect();
+        let roots: f64 = areas.iter().map(|area| area.sqrt()).sum();
+        let mut links = Vec::with_capacity(wanted.len());
+        for (&link, &area) in wanted.iter().zip(&areas) {
+            let own = ((area.sqrt() / roots * count as f64).round() as usize).max(1);
+            let drawn = surface(link).map_or(vec![], |surface| surface.sample(own * DRAWN, SEED));
+            if !drawn.is_empty() {
+                links.push(LinkSamples::spread(link, &drawn, own, area));
+            }
+        }
+        if links.is_empty() {
+            return Err(Error::input("robot", "none of the surface is exposed; a contact map needs a part of it exposed"));
+        }
+        Ok(SurfaceSamples {
+            area: areas.iter().sum(),
+            count: links.iter().map(|link| link.places.len()).sum(),
+            links,
+        })
+    }
+
+    /// Edge of the patch that a sample stands for, on average (m).
+    pub fn spacing(&self) -> f64 {
+        (self.area / self.count as f64).sqrt()
+    }
+}
+
+impl LinkSamples {
+    /// `count` of the points drawn, each the farthest from those before (Gonzalez 1985); each stands for the points that are
+    /// nearest to it.
+    fn spread(link: usize, drawn: &[SurfacePoint], count: usize, area: f64) -> Self {
+        let mut nearest = vec![(f64::INFINITY, 0); drawn.len()];
+        let mut places = Vec::with_capacity(count);
+        let mut next = 0;
+        while places.len() < count.min(drawn.len()) {
+            let place = drawn[next];
+            for ((distance, owner), other) in nearest.iter_mut().zip(drawn) {
+                let apart = (other.point - place.point).norm_squared();
+                if apart < *distance {
+                    (*distance, *owner) = (apart, places.len());
+                }
+            }
+            places.push(place);
+            let farthest = (0..drawn.len()).max_by(|&a, &b| nearest[a].0.total_cmp(&nearest[b].0));
+            next = farthest.unwrap_or(0);
+        }
+        let mut areas = vec![0.0; places.len()];
+        nearest.iter().for_each(|(_, owner)| areas[*owner] += area / drawn.len() as f64);
+        let blocks = places.chunks(LANES).map(block).collect();
+        LinkSamples { link, places, areas, blocks }
+    }
+}
+
+fn block(places: &[SurfacePoint]) -> PlaceBlock {
+    let of = |k: usize| {
+        let place: Option<&SurfacePoint> = places.get(k).or(places.last());
+        place.map_or((Vector3::zeros(), Vector3::z()), |place| (place.point, place.normal))
+    };
+    PlaceBlock::new(&std::array::from_fn(of))
+}
