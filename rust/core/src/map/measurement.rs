@@ -1,19 +1,22 @@
 //! One measured torque at one pose, and what it says of contacts at points of the surface.
 
+use nalgebra::Vector3;
+
 use crate::robot::{Kinematics, Robot};
-use crate::torque::{ForcePrior, Frames, PlaceBlock, PushLikelihood, Target, TorqueNoise};
+use crate::torque::{ForcePrior, Frames, PlaceBlock, PushLikelihood, Target};
 
 /// A torque at a pose.
 #[derive(Debug, Clone)]
 pub(super) struct Measurement {
-    kinematics: Kinematics,
-    pub torque: Vec<f64>,
+    torque: Vec<f64>,
     /// Its stated standard deviation, and the one it is weighed with (Nm, N).
-    pub stated: Vec<f64>,
+    stated: Vec<f64>,
     deviation: Vec<f64>,
     /// By velocity variable: whether its torque is a force.
     is_force: Vec<bool>,
-    pub frames: Frames,
+    /// Without weights, and by the deviations.
+    plain: Frames,
+    frames: Frames,
     target: Target,
 }
 
@@ -21,36 +24,66 @@ impl Measurement {
     pub fn new(robot: &Robot, wanted: Vec<usize>) -> Self {
         let frames = Frames::new(robot, wanted);
         Measurement {
-            kinematics: Kinematics::new(robot),
             torque: vec![0.0; robot.nv()],
             stated: vec![1.0; robot.nv()],
             deviation: vec![1.0; robot.nv()],
             is_force: robot.forces(),
             target: Target::new(&frames),
+            plain: frames.clone(),
             frames,
         }
     }
 
-    /// Takes on a checked configuration and torque.
-    pub fn set(&mut self, robot: &Robot, q: &[f64], torque: &[f64], noise: &TorqueNoise) {
-        self.kinematics.set_configuration(robot, q);
+    /// Takes on a pose, and a torque there with its standard deviations.
+    pub fn set(&mut self, robot: &Robot, kinematics: &Kinematics, torque: &[f64], stated: &[f64]) {
         self.torque.copy_from_slice(torque);
-        noise.set_deviations(torque, &mut self.stated);
-        self.blur(robot, 0.0);
+        self.stated.copy_from_slice(stated);
+        self.deviation.fill(1.0);
+        self.plain.update(robot, kinematics, &self.deviation);
+        self.blur(0.0);
     }
 
     /// Weighs the torques of joints that turn with another standard deviation beside the stated one (Nm).
-    pub fn blur(&mut self, robot: &Robot, more: f64) {
-        for ((deviation, stated), is_force) in self.deviation.iter_mut().zip(&self.stated).zip(&self.is_force) {
+    pub fn blur(&mut self, more: f64) {
+        for ((deviation, stated), is_force) in self.deviation.iter_mut().zip(&self.stated).zip(&self.is_force)
+        {
             *deviation = if *is_force { *stated } else { stated.hypot(more) };
         }
-        self.frames.update(robot, &self.kinematics, &self.deviation);
+        self.frames.weigh(&self.plain, &self.deviation);
         self.target.set(&self.frames, &self.torque, &self.deviation);
+    }
+
+    /// The links as they are weighed.
+    pub fn frames(&self) -> &Frames {
+        &self.frames
+    }
+
+    /// Stated standard deviations (Nm, N).
+    pub fn stated(&self) -> &[f64] {
+        &self.stated
     }
 
     /// Logarithm of the likelihood without contact, but for a constant.
     pub fn without_contact(&self) -> f64 {
         -0.5 * self.target.squared - self.deviation.iter().map(|deviation| deviation.ln()).sum::<f64>()
+    }
+
+    /// Squared norm, over all joints, of the torque that a force at a point of a link leaves over, in standard deviations (point
+    /// and force in the link's frame); `left` is memory for as many numbers.
+    pub fn left_over(
+        &self,
+        link: usize,
+        point: &Vector3<f64>,
+        force: &Vector3<f64>,
+        left: &mut [f64],
+    ) -> f64 {
+        let (own, rest) = self.frames.links[link].left_over(point, force, self.target.on(link), left);
+        (self.target.squared - own + rest).max(0.0)
+    }
+
+    /// The torques as they are weighed.
+    pub fn target(&self) -> &Target {
+        &self.target
     }
 
     /// What it says of contacts at a block of points on a link, relative to no contact.

@@ -5,6 +5,8 @@ mod estimate;
 mod leaves;
 mod measurement;
 mod options;
+mod summary;
+mod surface_posterior;
 mod surface_samples;
 
 pub use contact_map::ContactMap;

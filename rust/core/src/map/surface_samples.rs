@@ -53,7 +53,10 @@ impl SurfaceSamples {
             }
         }
         if links.is_empty() {
-            return Err(Error::input("robot", "none of the surface is exposed; a contact map needs a part of it exposed"));
+            return Err(Error::input(
+                "robot",
+                "none of the surface is exposed; a contact map needs a part of it exposed",
+            ));
         }
         Ok(SurfaceSamples {
             area: areas.iter().sum(),

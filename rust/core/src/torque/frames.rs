@@ -150,6 +150,21 @@ impl Frames {
         }
     }
 
+    /// Takes on the pose of `plain` frames, whose torques are not weighed, with the standard deviation of each torque.
+    pub fn weigh(&mut self, plain: &Frames, deviation: &[f64]) {
+        for &index in &self.wanted {
+            let (frame, plain) = (&mut self.links[index], &plain.links[index]);
+            frame.pose = plain.pose;
+            frame.gram = Matrix6::zeros();
+            for ((axis, plain), &k) in frame.axes.iter_mut().zip(&plain.axes).zip(&frame.variables) {
+                axis.linear = plain.linear / deviation[k];
+                axis.angular = plain.angular / deviation[k];
+                let column = stack(&axis.linear, &axis.angular);
+                frame.gram += column * column.transpose();
+            }
+        }
+    }
+
     /// Takes from torques [Nm] what a force at a point of a link does (all in the link's frame).
     pub fn subtract(
         &self,

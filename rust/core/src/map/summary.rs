@@ -1,0 +1,95 @@
+//! What a posterior over the surface says in short: the contact, its region, and whether the noise explains what is left.
+
+use super::estimate::MapEstimate;
+use super::surface_posterior::SurfacePosterior;
+use crate::math::chi_square::upper_limit;
+use crate::posterior::{ContactEstimate, MOST_MODES};
+use crate::robot::Robot;
+use crate::torque::{BestForce, ForceModel};
+
+/// Share of the posterior that a region holds.
+const REGION: f64 = 0.9;
+
+/// The estimate, and memory to find it.
+#[derive(Debug, Clone)]
+pub(crate) struct Summary {
+    friction: ForceModel,
+    /// Distances from the contact (m), with weights.
+    distances: Vec<(f64, f64)>,
+    left: Vec<f64>,
+    found: MapEstimate,
+}
+
+impl Summary {
+    pub fn new(robot: &Robot, links: usize, friction: f64, posterior: &SurfacePosterior) -> Self {
+        Summary {
+            friction: ForceModel::FrictionCone(friction),
+            distances: Vec::with_capacity(posterior.most_pieces()),
+            left: vec![0.0; robot.nv()],
+            found: MapEstimate {
+                estimate: ContactEstimate::new(links, MOST_MODES),
+                region_radius: None,
+                log_evidence: 0.0,
+                explained: true,
+                residual: 0.0,
+                effective_samples: 0.0,
+            },
+        }
+    }
+
+    /// The estimate that was read last.
+    pub fn estimate(&self) -> &MapEstimate {
+        &self.found
+    }
+
+    /// Reads a posterior that is complete.
+    pub fn read(&mut self, posterior: &SurfacePosterior) -> &MapEstimate {
+        let measurement = posterior.newest();
+        let frames = measurement.frames();
+        let found = &mut self.found;
+        found.estimate.set(&posterior.clusters, frames, 0.0);
+        found.effective_samples = posterior.effective;
+        found.log_evidence = posterior.log_evidence();
+        let joints = self.left.len();
+        let mut misfit = f64::INFINITY;
+        for mode in &mut found.estimate.modes {
+            let frame = &frames.links[mode.link.get()];
+            let point = frame.pose.inverse_transform_point(&mode.point);
+            let normal = frame.pose.inverse_transform_vector(&mode.normal);
+            // A mode that pulls is one that pushes on the other side.
+            let inward = if mode.force.dot(&mode.normal) > 0.0 { -normal } else { normal };
+            let best = BestForce::of(
+                frame,
+                measurement.target().on(mode.link.get()),
+                self.friction,
+                &point,
+                &inward,
+            );
+            misfit = misfit.min(measurement.left_over(mode.link.get(), &point, &best.force, &mut self.left));
+        }
+        found.residual = if misfit.is_finite() { (misfit / joints as f64).sqrt() } else { 0.0 };
+        found.explained = misfit <= upper_limit(joints);
+        found.region_radius = found.estimate.contact.map(|contact| contact.point).map(|point| {
+            self.distances.clear();
+            for (leaf, weight) in posterior.leaves.iter().zip(&posterior.weights) {
+                let place = frames.links[leaf.link].pose.transform_point(&leaf.place.point);
+                self.distances.push(((place - point).norm(), *weight));
+            }
+            held_within(&mut self.distances)
+        });
+        &self.found
+    }
+}
+
+/// The distance within which most of the weight is, of distances with weights (m).
+fn held_within(distances: &mut [(f64, f64)]) -> f64 {
+    distances.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let mut held = 0.0;
+    for (distance, weight) in &*distances {
+        held += weight;
+        if held >= REGION {
+            return *distance;
+        }
+    }
+    distances.last().map_or(0.0, |last| last.0)
+}
