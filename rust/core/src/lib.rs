@@ -26,6 +26,7 @@ pub mod sensor;
 pub mod spatial;
 pub mod surface;
 mod torque;
+mod tracking;
 
 pub use error::{Error, Result};
 pub use nalgebra;

@@ -2,16 +2,19 @@
 
 use std::sync::Arc;
 
-use contactsense::isolation::{Candidate, Contact, Isolation};
+use contactsense::isolation::{Candidate, Contact, Isolation, LinkProbability};
+use contactsense::nalgebra::Matrix3;
+use contactsense::particle::Mode;
 use contactsense::sensor::JOINT_TORQUES;
-use numpy::PyArray1;
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
+use crate::estimate::PyMode;
 use crate::names::Names;
 use crate::once::Once;
 use crate::pickle::{plain_dict, reduced, Reduced};
-use crate::returned::{numbers, vector};
+use crate::returned::{from_rows, numbers, read_only, vector};
 
 type Array<'py> = Bound<'py, PyArray1<f64>>;
 
@@ -105,9 +108,19 @@ impl PyCandidate {
 pub struct PyContact {
     names: Arc<Names>,
     contact: Contact,
-    found: Vec<Candidate>,
+    found: Found,
     vectors: Vectors,
+    covariance: Once<PyArray2<f64>>,
     candidates: Once<PyTuple>,
+    modes: Once<PyTuple>,
+}
+
+/// A contact's parts of what all contacts share.
+#[derive(Default, serde::Serialize, serde::Deserialize)]
+pub struct Found {
+    candidates: Vec<Candidate>,
+    modes: Vec<Mode>,
+    link_probabilities: Vec<LinkProbability>,
 }
 
 #[derive(Default)]
@@ -120,11 +133,13 @@ struct Vectors {
 }
 
 impl PyContact {
-    fn new(names: Arc<Names>, contact: Contact, found: Vec<Candidate>) -> Self {
-        Self { names, contact, found, vectors: Vectors::default(), candidates: Once::default() }
+    fn new(names: Arc<Names>, contact: Contact, found: Found) -> Self {
+        let (vectors, covariance) = (Vectors::default(), Once::default());
+        let (candidates, modes) = (Once::default(), Once::default());
+        Self { names, contact, found, vectors, covariance, candidates, modes }
     }
 
-    pub fn from_content((names, contact, found): (Names, Contact, Vec<Candidate>)) -> Self {
+    pub fn from_content((names, contact, found): (Names, Contact, Found)) -> Self {
         Self::new(Arc::new(names), contact, found)
     }
 }
@@ -209,9 +224,74 @@ impl PyContact {
         self.candidates.get(py, || {
             let wrap = |candidate: &Candidate| PyCandidate::new(self.names.clone(), *candidate);
             let list: Vec<_> =
-                self.found.iter().map(|found| Bound::new(py, wrap(found))).collect::<PyResult<_>>()?;
+                self.found.candidates.iter().map(|found| Bound::new(py, wrap(found))).collect::<PyResult<_>>()?;
             PyTuple::new(py, list)
         })
+    }
+
+    /// Probability that the contact is on `link`; NaN where no posterior was worked out.
+    ///
+    /// A monitor works out the posterior of a single contact over all surface (`ContactMap`) where `samples` is not zero and
+    /// there are no sensors and no wanted points. It takes some ticks from the onset on.
+    #[getter]
+    fn probability(&self) -> f64 {
+        self.contact.posterior.as_ref().map_or(f64::NAN, |posterior| posterior.probability)
+    }
+
+    /// Probability that the contact is on each link, by the link's name; a new dict at every access, empty without posterior.
+    #[getter]
+    fn link_probabilities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for LinkProbability { link, probability } in &self.found.link_probabilities {
+            dict.set_item(self.names.link(*link), probability)?;
+        }
+        Ok(dict)
+    }
+
+    /// Covariance of the point, `(3, 3)`, world frame [m^2]; NaN without posterior; read-only.
+    ///
+    /// The second moment of the posterior about `point`, other modes included.
+    #[getter]
+    fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let known = self.contact.posterior.as_ref().map(|posterior| posterior.covariance);
+        let c = known.unwrap_or(Matrix3::repeat(f64::NAN));
+        let rows = (0..3).map(|i| [c[(i, 0)], c[(i, 1)], c[(i, 2)]]);
+        self.covariance.get(py, || Ok(read_only(from_rows(py, rows)?)))
+    }
+
+    /// Radius of the ball about `point` that holds 90 % of the posterior [m]; NaN without posterior.
+    #[getter]
+    fn region_radius(&self) -> f64 {
+        self.contact.posterior.as_ref().map_or(f64::NAN, |posterior| posterior.region_radius)
+    }
+
+    /// Places where the contact may be, most probable first; at most eight, empty without posterior.
+    ///
+    /// The same tuple at every access.
+    #[getter]
+    fn modes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        self.modes.get(py, || {
+            let wrap = |mode: &Mode| Bound::new(py, PyMode::new(self.names.clone(), *mode));
+            PyTuple::new(py, self.found.modes.iter().map(wrap).collect::<PyResult<Vec<_>>>()?)
+        })
+    }
+
+    /// Which contact it is over time: the same number in all ticks of one contact; None where contacts are not followed.
+    #[getter]
+    fn id(&self) -> Option<u64> {
+        self.contact.track.map(|track| track.id)
+    }
+
+    /// Time of the contact's first tick, as `ContactReport.time` [s]; NaN where contacts are not followed.
+    #[getter]
+    fn since(&self) -> f64 {
+        self.contact.track.map_or(f64::NAN, |track| track.since)
+    }
+
+    /// Greatest force so far [N]; NaN where contacts are not followed.
+    #[getter]
+    fn peak_force(&self) -> f64 {
+        self.contact.track.map_or(f64::NAN, |track| track.peak_force)
     }
 
     /// All attributes by name.
@@ -221,7 +301,9 @@ impl PyContact {
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
         let vectors = ["link", "point", "point_local", "force", "normal", "wrench", "source"];
         let others = ["located", "point_std", "verified", "candidates"];
-        plain_dict(slf.as_any(), &[&vectors[..], &others[..]].concat())
+        let posterior = ["probability", "link_probabilities", "covariance", "region_radius", "modes"];
+        let track = ["id", "since", "peak_force"];
+        plain_dict(slf.as_any(), &[&vectors[..], &others[..], &posterior[..], &track[..]].concat())
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
@@ -275,8 +357,16 @@ pub fn contacts<'py>(
 ) -> PyResult<Bound<'py, PyTuple>> {
     let wrap = |contact: &Contact| {
         // One that was unpickled from a damaged file may say anything.
-        let found = isolation.candidates.get(contact.candidates.clone()).unwrap_or_default();
-        PyContact::new(names.clone(), contact.clone(), found.to_vec())
+        let mut found = Found {
+            candidates: isolation.candidates.get(contact.candidates.clone()).unwrap_or_default().to_vec(),
+            ..Found::default()
+        };
+        if let Some(posterior) = &contact.posterior {
+            found.modes = isolation.modes.get(posterior.modes.clone()).unwrap_or_default().to_vec();
+            let links = isolation.link_probabilities.get(posterior.link_probabilities.clone());
+            found.link_probabilities = links.unwrap_or_default().to_vec();
+        }
+        PyContact::new(names.clone(), contact.clone(), found)
     };
     let list: Vec<Bound<'py, PyContact>> =
         isolation.contacts.iter().map(|contact| Bound::new(py, wrap(contact))).collect::<PyResult<_>>()?;

@@ -42,7 +42,7 @@ struct Vectors {
 }
 
 impl PyMode {
-    fn new(names: Arc<Names>, mode: Mode) -> Self {
+    pub fn new(names: Arc<Names>, mode: Mode) -> Self {
         Self { names, mode, vectors: Vectors::default() }
     }
 

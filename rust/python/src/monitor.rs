@@ -9,7 +9,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arguments::{number, pushing, robot, sole, Number};
+use crate::arguments::{number, pushing, robot, sole, whole, Number};
 use crate::arrays::{Readings, Vector};
 use crate::calibration::calibration_of;
 use crate::errors::to_python;
@@ -52,6 +52,8 @@ use crate::sensor::{sensor_tuple, sensors, wanted_places, wrench_thresholds};
 ///         showed, and the noise left over sets thresholds and says how well a contact is located.
 ///     locate_within: A contact is located if 90 % of the places that explain the torques are within this distance of
 ///         its point [m].
+///     samples: Samples of the surface from which the posterior of a single contact is worked out, as `ContactMap` does,
+///         spread over ticks; 0 for closed forms only. Not with sensors or wanted points.
 ///
 /// Raises:
 ///     InputError: Names the argument.
@@ -95,11 +97,11 @@ impl PyContactMonitor {
     #[new]
     #[pyo3(signature = (robot, *, dt, sensors=None, wanted_contacts=None, observer_gain=None, torque_threshold=None,
                         wrench_threshold=None, wrench_gain=None, bias_time_constant=None, bias_limit=None, bias_settle_time=None, hysteresis=None, hold_time=None,
-                        max_contacts=None, pushing=true, calibration=None, locate_within=None),
+                        max_contacts=None, pushing=true, calibration=None, locate_within=None, samples=None),
            text_signature = "(robot, *, dt, sensors=(), wanted_contacts=(), observer_gain=50.0, torque_threshold=0.5, \
                              wrench_threshold=2.0, wrench_gain=None, bias_time_constant=None, bias_limit=30.0, \
                              bias_settle_time=None, hysteresis=0.2, hold_time=0.02, max_contacts=5, pushing=True, \
-                             calibration=None, locate_within=0.05)")]
+                             calibration=None, locate_within=0.05, samples=1000)")]
     #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
         #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
@@ -119,6 +121,7 @@ impl PyContactMonitor {
         #[pyo3(from_py_with = pushing)] pushing: bool,
         calibration: Option<&Bound<'_, PyAny>>,
         locate_within: Option<Number<'_, '_>>,
+        samples: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let mut options = MonitorOptions::new(dt.named("dt")?);
         if let Some(gain) = observer_gain {
@@ -138,6 +141,9 @@ impl PyContactMonitor {
         options.isolation.pushing = pushing;
         if let Some(distance) = locate_within {
             options.isolation.locate_within = distance.named("locate_within")?;
+        }
+        if let Some(samples) = samples {
+            options.samples = whole("samples", samples, 1_000_000)? as usize;
         }
         if let Some(hold_time) = hold_time {
             options.hold_time = hold_time.named("hold_time")?;

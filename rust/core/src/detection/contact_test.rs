@@ -257,6 +257,15 @@ impl ContactTest {
         self.started = false;
     }
 
+    /// The torque behind the slowest observer, without bias, and its standard deviations.
+    pub fn slowest_signal(&mut self) -> (&[f64], &[f64]) {
+        let Self { signals, slow, without_bias, followed, .. } = self;
+        for ((value, torque), bias) in without_bias.iter_mut().zip(&*followed).zip(slow.bias()) {
+            *value = torque - bias;
+        }
+        (without_bias, signals.first().map_or(&[], |signal| signal.whitening.deviations()))
+    }
+
     /// The torque that slow errors are followed by.
     pub fn slowest(&self) -> &[f64] {
         &self.followed

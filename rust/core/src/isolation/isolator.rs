@@ -225,7 +225,6 @@ impl ContactIsolator {
         self.isolation.truncated |= overflow.contains(&true) || self.several.work.was_refused();
         if masked {
             self.regions.restore(&self.robot);
-            self.left_out.fill(false);
         }
         self.isolation.residual = self.unexplained.iter().map(|x| x * x).sum::<f64>().sqrt();
         &self.isolation
@@ -237,6 +236,11 @@ impl ContactIsolator {
         for ((left_out, sign), torque) in self.left_out.iter_mut().zip(inward).zip(tau_ext) {
             *left_out = sign * torque > 0.0;
         }
+    }
+
+    /// By velocity variable: left out of the next call.
+    pub(crate) fn left_out(&self) -> &[bool] {
+        &self.left_out
     }
 
     /// The answer of the last call.

@@ -11,6 +11,7 @@ mod one_more;
 mod open_part;
 mod options;
 mod pair;
+mod posterior;
 mod region;
 mod report;
 mod result;
@@ -29,4 +30,5 @@ mod wrench_rows;
 
 pub use isolator::ContactIsolator;
 pub use options::IsolatorOptions;
+pub use posterior::{ContactPosterior, LinkProbability, Track};
 pub use result::{Candidate, Contact, ContactPlace, Isolation};

@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use nalgebra::{Vector3, Vector6};
 
+use super::posterior::{ContactPosterior, LinkProbability, Track};
+use crate::posterior::{Mode, MOST_MODES};
 use crate::robot::LinkIndex;
 use crate::sensor::SensorIndex;
 use crate::spatial::vector::split;
@@ -121,10 +123,14 @@ pub struct Contact {
     pub verified: bool,
     /// This contact's part of [`Isolation::candidates`], best first.
     pub candidates: Range<usize>,
+    /// What the posterior over all surface says of it; none where only closed forms were tried.
+    pub posterior: Option<ContactPosterior>,
+    /// Which contact it is over time; none where contacts are not followed.
+    pub track: Option<Track>,
 }
 
 impl Contact {
-    pub(super) fn unlocated(link: LinkIndex) -> Self {
+    pub(crate) fn unlocated(link: LinkIndex) -> Self {
         Self {
             link,
             place: None,
@@ -133,6 +139,8 @@ impl Contact {
             located: false,
             verified: false,
             candidates: 0..0,
+            posterior: None,
+            track: None,
         }
     }
 
@@ -164,6 +172,10 @@ pub struct Isolation {
     pub contacts: Vec<Contact>,
     /// Surface hits of all contacts.
     pub candidates: Vec<Candidate>,
+    /// Modes of the contacts' posteriors.
+    pub modes: Vec<Mode>,
+    /// Probabilities of links, of all contacts' posteriors.
+    pub link_probabilities: Vec<LinkProbability>,
     /// How many components of the wrenches the torques leave open (Vorndamme 2017, eq. 31).
     pub rank_deficit: usize,
     /// Norm of the external torque that the contacts do not explain.
@@ -182,6 +194,8 @@ impl Isolation {
             contacts: Vec::with_capacity(contacts),
             candidates: Vec::with_capacity(CANDIDATES),
             link_candidates: Vec::with_capacity(links + contacts),
+            modes: Vec::with_capacity(MOST_MODES),
+            link_probabilities: Vec::with_capacity(links),
             ..Self::default()
         }
     }
@@ -190,6 +204,8 @@ impl Isolation {
         self.contacts.clear();
         self.candidates.clear();
         self.link_candidates.clear();
+        self.modes.clear();
+        self.link_probabilities.clear();
         self.rank_deficit = 0;
         self.residual = 0.0;
         self.truncated = false;

@@ -7,7 +7,7 @@ use crate::torque::{ForcePrior, Frames, PlaceBlock, PushLikelihood, Target};
 
 /// A torque at a pose.
 #[derive(Debug, Clone)]
-pub(super) struct Measurement {
+pub(crate) struct Measurement {
     torque: Vec<f64>,
     /// Its stated standard deviation, and the one it is weighed with (Nm, N).
     stated: Vec<f64>,
@@ -41,6 +41,22 @@ impl Measurement {
         self.deviation.fill(1.0);
         self.plain.update(robot, kinematics, &self.deviation);
         self.blur(0.0);
+    }
+
+    /// The same where only contacts on one link are looked at.
+    pub fn set_on(
+        &mut self,
+        link: usize,
+        robot: &Robot,
+        kinematics: &Kinematics,
+        torque: &[f64],
+        stated: &[f64],
+    ) {
+        for frames in [&mut self.plain, &mut self.frames] {
+            frames.wanted.clear();
+            frames.wanted.push(link);
+        }
+        self.set(robot, kinematics, torque, stated);
     }
 
     /// Weighs the torques of joints that turn with another standard deviation beside the stated one (Nm).

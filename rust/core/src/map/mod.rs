@@ -9,6 +9,10 @@ mod summary;
 mod surface_posterior;
 mod surface_samples;
 
+pub(crate) use measurement::Measurement;
+pub(crate) use summary::Summary;
+pub(crate) use surface_posterior::SurfacePosterior;
+
 pub use contact_map::ContactMap;
 pub use estimate::MapEstimate;
 pub use options::MapOptions;

@@ -55,7 +55,7 @@ impl MapOptions {
     ///
     /// # Errors
     /// [`Error::Input`] names the option.
-    pub(super) fn check(&self, robot: &Robot) -> Result<Vec<usize>> {
+    pub(crate) fn check(&self, robot: &Robot) -> Result<Vec<usize>> {
         if !(1..=MOST_SAMPLES).contains(&self.samples) {
             return Err(Error::input(
                 "samples",

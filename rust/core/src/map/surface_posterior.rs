@@ -14,7 +14,7 @@ use crate::surface::SurfacePoint;
 use crate::torque::{ForcePrior, PlaceBlock, LANES};
 
 /// More measurements of one contact than this are not kept.
-pub(crate) const MOST_MEASUREMENTS: usize = 4;
+const MOST_MEASUREMENTS: usize = 4;
 /// Likelihoods of blocks that a step works out at most, about.
 const STEP: usize = 96;
 /// Pieces that are divided at a level at most, and how many levels there are: work is bounded.

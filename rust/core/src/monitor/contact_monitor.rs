@@ -16,6 +16,7 @@ use crate::observer::{MomentumObserver, Step};
 use crate::robot::Robot;
 use crate::sample::Sample;
 use crate::sensor::{SensorIndex, SensorTree};
+use crate::tracking::{ContactTracker, TickEvidence};
 
 /// The sense of touch of one robot, called once a control tick.
 ///
@@ -57,6 +58,8 @@ pub struct ContactMonitor {
     pub(super) test: Option<ContactTest>,
     /// Of each joint (Nm, N).
     pub(super) threshold: Vec<f64>,
+    /// Standard deviations of the external torque at rest, where all joints are not tested at once (Nm, N).
+    pub(super) deviation: Vec<f64>,
     /// The thresholds as a covariance.
     pub(super) scale: Whitening,
     pub(super) limits: JointLimits,
@@ -64,6 +67,8 @@ pub struct ContactMonitor {
     pub(super) release: ReleaseDetector,
     pub(super) detector: Detector,
     pub(super) isolator: ContactIsolator,
+    /// None where `samples` is zero, and with sensors or wanted points.
+    pub(super) tracker: Option<ContactTracker>,
     pub(super) sensing: Option<Sensing>,
     pub(super) options: MonitorOptions,
     pub(super) report: ContactReport,
@@ -90,7 +95,7 @@ impl ContactMonitor {
         let test = of_test.contact_test(&robot, &gain, has_wanted)?;
         let options = &signal.with_calibrated_noise(&robot, &gain)?;
         let tree = SensorTree::new(&robot, &options.isolation.sensors)?;
-        let (threshold, _) = options.isolation.threshold_and_noise(&robot)?;
+        let (threshold, noise) = options.isolation.threshold_and_noise(&robot)?;
         let detector = Detector::new(
             robot.clone(),
             if test.is_some() { &[1.0] } else { &threshold },
@@ -110,16 +115,17 @@ impl ContactMonitor {
         let release = ReleaseDetector::new(
             options.release_rule(&robot, &options.release_threshold(&robot, &test, &threshold)?)?,
         );
-        let tracker = |constant| BiasTracker::new(constant, greatest_bias);
+        let bias_tracker = |constant| BiasTracker::new(constant, greatest_bias);
         let isolator = ContactIsolator::new(robot.clone(), &options.isolation)?;
         let sensors = options.isolation.sensors.len();
+        let tracker = options.tracker(&robot)?;
         let mut monitor = Self {
             clock: SampleClock::new(options.dt),
             source: None,
             detector,
             release,
             sensing: (!options.isolation.sensors.is_empty()).then_some(sensing),
-            bias: options.bias_time_constant.filter(|_| test.is_none()).map(tracker).transpose()?,
+            bias: options.bias_time_constant.filter(|_| test.is_none()).map(bias_tracker).transpose()?,
             free: FreeDirections::new(
                 &robot,
                 &options.wanted_points,
@@ -131,6 +137,7 @@ impl ContactMonitor {
             scale: scale_of(&threshold),
             limits: JointLimits::new(&robot),
             threshold,
+            deviation: noise.at_rest().to_vec(),
             report: ContactReport {
                 links: Vec::with_capacity(robot.touchable_links().len()),
                 external_torque: vec![0.0; nv],
@@ -143,6 +150,7 @@ impl ContactMonitor {
                 ..ContactReport::default()
             },
             isolator,
+            tracker,
             options: options.clone(),
             unloaded: Arc::clone(&robot),
             payload: None,
@@ -208,6 +216,7 @@ impl ContactMonitor {
             self.isolate();
         } else {
             self.report.isolation.clear();
+            self.tracker.iter_mut().for_each(ContactTracker::rest);
         }
         self.finish_report();
         &self.report
@@ -235,6 +244,22 @@ impl ContactMonitor {
             }
         }
         self.isolator.exchange(&mut self.report.isolation);
+        let Self { tracker, test, observer, isolator, report, deviation, clock, .. } = self;
+        let Some(tracker) = tracker else { return };
+        let ContactReport { external_torque, isolation, .. } = report;
+        let (torque, deviation) = match test {
+            Some(test) => test.slowest_signal(),
+            None => (&external_torque[..], &deviation[..]),
+        };
+        let evidence = TickEvidence {
+            kinematics: observer.kinematics(),
+            torque,
+            deviation,
+            newest: external_torque,
+            left_out: isolator.left_out(),
+            time: clock.time(),
+        };
+        tracker.follow(&evidence, isolation);
     }
 
     fn check(&self, sample: &Sample<'_>) -> Result<()> {
@@ -292,6 +317,7 @@ impl ContactMonitor {
         self.free.reset();
         self.detector.reset();
         self.report.isolation.clear();
+        self.tracker.iter_mut().for_each(ContactTracker::reset);
         self.report.external_torque.fill(0.0);
         self.report.collision_torque.fill(0.0);
         if let Some(sensing) = &mut self.sensing {

@@ -7,6 +7,7 @@ use crate::detection::{ContactTest, ReleaseRule, FOLLOW_TIME};
 use crate::error::{Error, Result};
 use crate::isolation::IsolatorOptions;
 use crate::robot::Robot;
+use crate::tracking::ContactTracker;
 
 /// Settings of a [`ContactMonitor`](super::ContactMonitor).
 ///
@@ -59,6 +60,18 @@ pub struct MonitorOptions {
     /// With bias tracking: the share of its greatest torque in a contact that a joint's gear or sensor may keep after it.
     /// Per velocity variable, or one for all.
     pub hysteresis: Vec<f64>,
+    /// Samples of the surface by which the place of a contact is found where closed forms do not determine it; zero for closed
+    /// forms only.
+    #[cfg_attr(feature = "serde", serde(default = "samples"))]
+    pub samples: usize,
+}
+
+/// Enough for centimetres on an arm: pieces that matter are divided.
+const SAMPLES: usize = 1000;
+
+#[cfg(feature = "serde")]
+fn samples() -> usize {
+    SAMPLES
 }
 
 /// A bias of more thresholds than this is taken for a fault of the set-up: a wrong sign of `tau`, a missing tool. Real arms
@@ -86,6 +99,7 @@ impl MonitorOptions {
             bias_limit: BIAS_LIMIT,
             bias_settle_time: None,
             hysteresis: vec![HYSTERESIS],
+            samples: SAMPLES,
         }
     }
 
@@ -113,6 +127,19 @@ impl MonitorOptions {
         } else {
             ContactTest::new(robot, &variances, self.dt, &levels, time)
         }))
+    }
+
+    /// What finds places of contacts by samples of the surface. Torques that sensors or wanted points share are left to closed forms.
+    ///
+    /// # Errors
+    /// [`Error::Input`] names the option.
+    pub(super) fn tracker(&self, robot: &Arc<Robot>) -> Result<Option<ContactTracker>> {
+        let shared = !self.isolation.sensors.is_empty() || !self.wanted_points.is_empty();
+        if self.samples == 0 || shared || !robot.has_contact_links() {
+            return Ok(None);
+        }
+        let (_, noise) = self.isolation.threshold_and_noise(robot)?;
+        ContactTracker::new(Arc::clone(robot), self.samples, noise, self.isolation.locate_within).map(Some)
     }
 
     /// With the noise and the offsets of sensors of the calibration, and thresholds for its rate of false alarms, where none

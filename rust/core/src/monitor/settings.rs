@@ -54,7 +54,7 @@ impl ContactMonitor {
     /// Everything is checked and made before anything is changed.
     fn set_isolation(&mut self, isolation: IsolatorOptions) -> Result<()> {
         let options = MonitorOptions { isolation, ..self.options.clone() };
-        let (threshold, _) = options.isolation.threshold_and_noise(&self.robot)?;
+        let (threshold, noise) = options.isolation.threshold_and_noise(&self.robot)?;
         let tree = SensorTree::new(&self.robot, &options.isolation.sensors)?;
         let wrench_threshold = check_wrench_threshold(&tree, &options.isolation.wrench_threshold)?;
         let greatest_bias = options.greatest_bias(&threshold)?;
@@ -64,7 +64,9 @@ impl ContactMonitor {
             bias.set_limit(greatest_bias);
         }
         self.release.set_rule(rule);
+        self.tracker = options.tracker(&self.robot)?;
         self.threshold = threshold;
+        self.deviation.copy_from_slice(noise.at_rest());
         self.detector.set_wrench_threshold(wrench_threshold);
         self.options = options;
         Ok(())

@@ -4,6 +4,11 @@ use super::robot::{Robot, WORLD};
 use crate::error::{Error, Result};
 
 impl Robot {
+    /// Whether there is a link that moves and has a surface.
+    pub(crate) fn has_contact_links(&self) -> bool {
+        self.touchable_links().iter().any(|link| self.links()[link.get()].body != WORLD)
+    }
+
     /// Indices, in order, of the links that move and have a surface: all of them, or those named in the argument `links`.
     /// `user` is what seeks a contact, for the message.
     ///
