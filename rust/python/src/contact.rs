@@ -223,8 +223,12 @@ impl PyContact {
     fn candidates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         self.candidates.get(py, || {
             let wrap = |candidate: &Candidate| PyCandidate::new(self.names.clone(), *candidate);
-            let list: Vec<_> =
-                self.found.candidates.iter().map(|found| Bound::new(py, wrap(found))).collect::<PyResult<_>>()?;
+            let list: Vec<_> = self
+                .found
+                .candidates
+                .iter()
+                .map(|found| Bound::new(py, wrap(found)))
+                .collect::<PyResult<_>>()?;
             PyTuple::new(py, list)
         })
     }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::free_directions::{level_shares, FreeDirections};
 use super::friction_errors::FrictionErrors;
 use super::payload_errors::{Load, PayloadErrors};
+use super::recent_torque::RecentTorque;
 use super::slow_errors::SlowErrors;
 use super::velocity_covariance::VelocityCovariance;
 use super::whitening::Whitening;
@@ -115,6 +116,9 @@ pub(crate) struct ContactTest {
     /// By velocity variable: over one where the joint is over its own threshold.
     joints: Vec<f64>,
     suspicious: bool,
+    recent: RecentTorque,
+    /// Of the errors of a contact's torque (Nm, N).
+    deviations: Vec<f64>,
 }
 
 impl ContactTest {
@@ -144,6 +148,8 @@ impl ContactTest {
             followed: vec![0.0; nv],
             joints: vec![0.0; nv],
             suspicious: false,
+            recent: RecentTorque::new(nv),
+            deviations: vec![1.0; nv],
             robot,
             dt,
         }
@@ -241,6 +247,7 @@ impl ContactTest {
     /// A step of `dt` (s): slow errors are followed, or not where something may touch the robot.
     #[inline]
     pub fn follow(&mut self, dt: f64, touched: bool) {
+        self.recent.advance(&self.followed, dt, touched);
         if touched || self.payload.settling() {
             self.slow.lose(&self.followed, dt);
         } else {
@@ -257,13 +264,25 @@ impl ContactTest {
         self.started = false;
     }
 
-    /// The torque behind the slowest observer, without bias, and its standard deviations.
-    pub fn slowest_signal(&mut self) -> (&[f64], &[f64]) {
-        let Self { signals, slow, without_bias, followed, .. } = self;
-        for ((value, torque), bias) in without_bias.iter_mut().zip(&*followed).zip(slow.bias()) {
+    /// What a contact does to the torque behind the slowest observer, and the standard deviations of its errors: since just
+    /// before the contact where that is known, and else without bias.
+    pub fn contact_signal(&mut self) -> (&[f64], &[f64]) {
+        let Self { signals, slow, without_bias, followed, recent, velocity, friction, deviations, .. } = self;
+        let before = recent.before();
+        let bias = before.map_or(slow.bias(), |(torque, _)| torque);
+        for ((value, torque), bias) in without_bias.iter_mut().zip(&*followed).zip(bias) {
             *value = torque - bias;
         }
-        (without_bias, signals.first().map_or(&[], |signal| signal.whitening.deviations()))
+        let Some(signal) = signals.first() else { return (without_bias, deviations) };
+        for (i, deviation) in deviations.iter_mut().enumerate() {
+            let slow = match before {
+                Some((_, age)) => slow.change(i, signal.model[i], age),
+                None => slow.variance(i, signal.model[i]),
+            };
+            let white = signal.torque[i] + velocity.row(i)[i] * signal.velocity[i].powi(2);
+            *deviation = (white + slow + signal.friction[i] * friction.shares()[i]).sqrt();
+        }
+        (without_bias, deviations)
     }
 
     /// The torque that slow errors are followed by.
@@ -338,6 +357,7 @@ impl ContactTest {
         self.slow.reset();
         self.friction.reset();
         self.payload.reset();
+        self.recent.reset();
         self.joints.fill(0.0);
         (self.next, self.started, self.suspicious) = (0, false, false);
     }

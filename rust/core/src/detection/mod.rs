@@ -7,6 +7,7 @@ mod free_directions;
 mod friction_errors;
 mod gate;
 mod payload_errors;
+mod recent_torque;
 mod release;
 mod signal_tree;
 mod slow_errors;

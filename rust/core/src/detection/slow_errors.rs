@@ -100,6 +100,12 @@ impl SlowErrors {
             + self.kept[j]
     }
 
+    /// The variance of what joint `j`'s errors change by within `time` (s), behind an observer that follows them by a share.
+    #[inline]
+    pub fn change(&self, j: usize, share: f64, time: f64) -> f64 {
+        2.0 * share * self.noise.model[j] * (1.0 - (-time / self.noise.model_time[j]).exp())
+    }
+
     /// Takes a torque that a contact left behind for the bias.
     pub fn set(&mut self, bias: &[f64]) {
         self.bias.copy_from_slice(bias);

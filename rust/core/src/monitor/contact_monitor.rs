@@ -248,7 +248,7 @@ impl ContactMonitor {
         let Some(tracker) = tracker else { return };
         let ContactReport { external_torque, isolation, .. } = report;
         let (torque, deviation) = match test {
-            Some(test) => test.slowest_signal(),
+            Some(test) => test.contact_signal(),
             None => (&external_torque[..], &deviation[..]),
         };
         let evidence = TickEvidence {

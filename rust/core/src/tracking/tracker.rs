@@ -22,6 +22,8 @@ const INTERVAL_SHARE: f64 = 0.25;
 const STRONG: f64 = 0.6;
 /// A torque that is left out counts with so many times its standard deviation.
 const LEFT_OUT: f64 = 1e6;
+/// A normal force is determined if it exceeds so many standard deviations.
+const DETERMINED: f64 = 2.0;
 /// A closed form gives a contact's point if that is not farther from the posterior's than its region's radius, or this (m).
 const AGREES: f64 = 0.01;
 
@@ -154,15 +156,16 @@ impl ContactTracker {
         self.modes.extend(found.estimate.modes.iter().map(local));
     }
 
-    /// The force of a tick at a place on a link, in its frame (N).
-    fn force(&mut self, evidence: &TickEvidence<'_>, place: &Mode) -> Vector3<f64> {
+    /// The force of a tick at a place on a link, in its frame (N); none where the torques do not determine it.
+    fn force(&mut self, evidence: &TickEvidence<'_>, place: &Mode) -> Option<Vector3<f64>> {
         let link = place.link.get();
         self.weigh(evidence);
         self.now.set_on(link, &self.robot, evidence.kinematics, evidence.newest, &self.deviation);
         let (frame, target) = (&self.now.frames().links[link], self.now.target().on(link));
         // One that pulls pushes from within.
         let outward = if place.force.dot(&place.normal) > 0.0 { -place.normal } else { place.normal };
-        BestForce::of(frame, target, self.friction, &place.point, &outward).force
+        let best = BestForce::of(frame, target, self.friction, &place.point, &outward);
+        (best.normal > DETERMINED * best.variance.sqrt()).then_some(best.force)
     }
 
     fn answer(&mut self, evidence: &TickEvidence<'_>, isolation: &mut Isolation) {
@@ -183,7 +186,7 @@ impl ContactTracker {
             !several && contact.located && contact.link == place.link && contact.place.is_some_and(near)
         });
         let mut contact = closed_form.cloned().unwrap_or_else(|| {
-            let force = pose.rotation * self.force(evidence, &place);
+            let force = self.force(evidence, &place).map(|force| pose.rotation * force);
             Contact {
                 place: Some(ContactPlace {
                     point,
@@ -191,7 +194,7 @@ impl ContactTracker {
                     normal: pose.rotation * place.normal,
                     std: covariance.trace().sqrt(),
                 }),
-                wrench: Some(stack(&force, &(point - pose.translation).cross(&force))),
+                wrench: force.map(|force| stack(&force, &(point - pose.translation).cross(&force))),
                 verified: explained && self.robot.chain(self.robot[place.link].body).len() > LINE_UNKNOWNS,
                 ..Contact::unlocated(place.link)
             }
