@@ -52,7 +52,7 @@ SIGNATURES = {
     "torque_threshold=0.5, "
     "wrench_threshold=2.0, wrench_gain=None, bias_time_constant=None, bias_limit=30.0, "
     "bias_settle_time=None, hysteresis=0.2, hold_time=0.02, max_contacts=5, pushing=True, "
-    "calibration=None, locate_within=0.05",
+    "calibration=None, locate_within=0.05, samples=1000",
     "ContactMonitor.update": "q, v, tau, wrenches=None, *, dt=None, friction=None",
     "ContactMonitor.update_external": "q, tau_ext, wrenches=None, *, v=None, dt=None",
     "ContactMonitor.set_payload": "link, mass, com",

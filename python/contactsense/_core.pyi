@@ -1454,6 +1454,40 @@ class Contact:
         Every intersection of the line of action with a surface, points on other links that explain the torques about as
         well, or the points of several solutions. The same tuple at every access.
         """
+    @property
+    def probability(self) -> float:
+        """Probability that the contact is on `link`; NaN where no posterior was worked out.
+
+        A monitor works out the posterior of a single contact over all surface (`ContactMap`) where `samples` is not zero and
+        there are no sensors and no wanted points. It takes some ticks from the onset on.
+        """
+    @property
+    def link_probabilities(self) -> dict[str, float]:
+        """Probability that the contact is on each link, by the link's name; a new dict at every access, empty without posterior."""
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """Covariance of the point, `(3, 3)`, world frame [m^2]; NaN without posterior; read-only.
+
+        The second moment of the posterior about `point`, other modes included.
+        """
+    @property
+    def region_radius(self) -> float:
+        """Radius of the ball about `point` that holds 90 % of the posterior [m]; NaN without posterior."""
+    @property
+    def modes(self) -> tuple[Mode, ...]:
+        """Places where the contact may be, most probable first; at most eight, empty without posterior.
+
+        The same tuple at every access.
+        """
+    @property
+    def id(self) -> int | None:
+        """Which contact it is over time: the same number in all ticks of one contact; None where contacts are not followed."""
+    @property
+    def since(self) -> float:
+        """Time of the contact's first tick, as `ContactReport.time` [s]; NaN where contacts are not followed."""
+    @property
+    def peak_force(self) -> float:
+        """Greatest force so far [N]; NaN where contacts are not followed."""
 
 @final
 class Candidate:
@@ -1523,6 +1557,8 @@ class ContactMonitor:
             showed, and the noise left over sets thresholds and says how well a contact is located.
         locate_within: A contact is located if 90 % of the places that explain the torques are within this distance of
             its point [m].
+        samples: Samples of the surface from which the posterior of a single contact is worked out, as `ContactMap` does,
+            spread over ticks; 0 for closed forms only. Not with sensors or wanted points.
 
     Raises:
         InputError: Names the argument.
@@ -1562,6 +1598,7 @@ class ContactMonitor:
         pushing: bool = True,
         calibration: Calibration | None = None,
         locate_within: float = 0.05,
+        samples: int = 1000,
     ) -> Self: ...
     @property
     def sensors(self) -> tuple[ForceTorqueSensor, ...]:

@@ -83,7 +83,8 @@ impl ContactMap {
         self.posterior.forget();
         self.posterior.measure(&self.kinematics, tau_ext, &self.deviation);
         while !self.posterior.step() {}
-        Ok(self.summary.read(&self.posterior))
+        self.summary.read(&self.posterior);
+        Ok(self.summary.withdraw_unlikely())
     }
 
     /// What the last evaluation said.
@@ -103,16 +104,25 @@ impl ContactMap {
 
     /// By sample: its point in the world frame at the last evaluation (m), and the logarithm of its share of the posterior.
     pub fn log_posterior(&self) -> impl Iterator<Item = (Vector3<f64>, f64)> + '_ {
-        let SurfacePosterior { samples, log_push, log_pull, log_samples, .. } = &self.posterior;
+        let log_weights = || self.log_weights().map(|(.., log)| log);
+        let greatest = log_weights().fold(f64::NEG_INFINITY, f64::max);
+        let total = greatest + log_weights().map(|log| (log - greatest).exp()).sum::<f64>().ln();
+        self.log_weights().map(move |(link, point, log)| {
+            let pose = &self.posterior.newest().frames().links[link].pose;
+            (pose.transform_point(&point), log - total)
+        })
+    }
+
+    /// By sample: its link, its point in the link's frame, and the logarithm of its weight.
+    fn log_weights(&self) -> impl Iterator<Item = (usize, Vector3<f64>, f64)> + '_ {
+        let SurfacePosterior { samples, log_push, log_pull, .. } = &self.posterior;
         let mut entry = 0;
         samples.links.iter().flat_map(move |link| {
             let first = entry;
             entry += link.blocks.len() * LANES;
-            let pose = &self.posterior.newest().frames().links[link.link].pose;
             let places = link.places.iter().zip(&link.areas).enumerate();
             places.map(move |(k, (place, area))| {
-                let log = log_sum(log_push[first + k], log_pull[first + k]) + area.ln();
-                (pose.transform_point(&place.point), log - log_samples)
+                (link.link, place.point, log_sum(log_push[first + k], log_pull[first + k]) + area.ln())
             })
         })
     }

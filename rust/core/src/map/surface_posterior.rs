@@ -70,8 +70,7 @@ pub(crate) struct SurfacePosterior {
     level: usize,
     /// Edge of the smallest pieces (m).
     edge: f64,
-    /// Logarithms of the sums of all samples' and all pieces' weights.
-    pub(super) log_samples: f64,
+    /// Logarithm of the sum of all pieces' weights.
     log_pieces: f64,
     pub(super) effective: f64,
 }
@@ -97,7 +96,6 @@ impl SurfacePosterior {
             stage: Stage::Done,
             level: 0,
             edge: 0.0,
-            log_samples: 0.0,
             log_pieces: 0.0,
             effective: 0.0,
             samples,
@@ -255,9 +253,6 @@ impl SurfacePosterior {
     /// Whether smaller pieces are needed, and which are divided.
     fn next_level(&mut self) -> Stage {
         self.weigh_leaves();
-        if self.level == 0 {
-            self.log_samples = self.log_pieces - self.without_contact();
-        }
         let best = (0..self.leaves.len()).max_by(|&a, &b| self.weights[a].total_cmp(&self.weights[b]));
         let Some(best) = best.filter(|_| self.level < MOST_LEVELS) else { return self.finish() };
         let force = self.force_at(best);

@@ -20,6 +20,8 @@ const INTERVAL: f64 = 0.025;
 const INTERVAL_SHARE: f64 = 0.25;
 /// A torque that is less than this share of the strongest one of the contact, in standard deviations, tells little.
 const STRONG: f64 = 0.6;
+/// One that is so many times as large tells more at once.
+const GROWN: f64 = 1.3;
 /// A torque that is left out counts with so many times its standard deviation.
 const LEFT_OUT: f64 = 1e6;
 /// A normal force is determined if it exceeds so many standard deviations.
@@ -48,7 +50,11 @@ pub(crate) struct ContactTracker {
     /// Of the onset, and of the last measurement (s); none without contact.
     since: Option<f64>,
     measured: f64,
+    /// Norm of the torque over its standard deviations: of this tick, the greatest of the measurements, and of those that
+    /// the place is from.
+    strength: f64,
     strongest: f64,
+    concluded: f64,
 }
 
 impl ContactTracker {
@@ -72,7 +78,9 @@ impl ContactTracker {
             friction: ForceModel::FrictionCone(options.friction),
             since: None,
             measured: 0.0,
+            strength: 0.0,
             strongest: 0.0,
+            concluded: 0.0,
             robot,
         })
     }
@@ -108,14 +116,13 @@ impl ContactTracker {
         let age = evidence.time - *self.since.get_or_insert(evidence.time);
         let interval = INTERVAL.max(INTERVAL_SHARE * age);
         let first = age == 0.0;
-        if !first && (!self.posterior.is_done() || evidence.time - self.measured < interval) {
-            return;
-        }
         self.weigh(evidence);
         let shares =
             evidence.torque.iter().zip(&self.deviation).map(|(torque, deviation)| torque / deviation);
         let strength = shares.map(|share| share * share).sum::<f64>().sqrt();
-        if !first && strength < STRONG * self.strongest {
+        self.strength = strength;
+        let due = evidence.time - self.measured >= interval || strength > GROWN * self.strongest;
+        if !first && (!self.posterior.is_done() || !due || strength < STRONG * self.strongest) {
             return;
         }
         if first || self.strongest < STRONG * strength {
@@ -140,6 +147,7 @@ impl ContactTracker {
     }
 
     fn conclude(&mut self) {
+        self.concluded = self.strongest;
         let found = self.summary.read(&self.posterior);
         let frames = self.posterior.newest().frames();
         let local = |mode: &Mode| {
@@ -174,6 +182,11 @@ impl ContactTracker {
         let sensed = isolation.contacts.iter().any(|contact| contact.source.is_some());
         let several = isolation.contacts.len() > 1;
         if sensed || (several && !found.explained) {
+            return;
+        }
+        // A torque that has grown since tells more than the posterior yet knows.
+        let outdated = self.strength > GROWN * self.concluded;
+        if outdated && isolation.contacts.iter().any(|contact| contact.located) {
             return;
         }
         let explained = found.explained;
