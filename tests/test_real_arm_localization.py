@@ -123,6 +123,7 @@ def test_fingers_are_next_to_their_hand() -> None:
         assert chain.steps("panda_rightfinger", "panda_leftfinger") == 2
         # The flange between them has no surface.
         assert chain.steps("panda_hand", "panda_link7") == 1
+        assert chain.steps("panda_link8", "panda_link7") == 1
 
 
 def test_reliability_in_bins() -> None:

@@ -26,7 +26,7 @@ _DOT, _LEAST_DOT = 4.0, 12.0
 
 
 def draw_localization(figure: Figure, study: Study) -> None:
-    """Five panels over the arms."""
+    """Links, errors and radii above; reliability, coverage, and errors over radii below."""
     title = "Where the calibrated monitor finds its contacts on simulated arms with the errors of real ones"
     figure.suptitle(title, fontsize=14, weight="bold", x=0.01, ha="left")
     axes: Any = figure.subplots(2, 3, gridspec_kw={"hspace": 0.08, "wspace": 0.04})
