@@ -19,9 +19,18 @@ from contactsense_studies.real_arm import arms, study
 from contactsense_studies.real_arm.arms import ARMS, described
 from contactsense_studies.real_arm.data import as_data
 from contactsense_studies.real_arm.judge import LINGERING, JudgedContact, judge_contacts, judge_free
-from contactsense_studies.real_arm.monitors import MARGIN, MONITORS, SETTLING, Heard, hear, thresholds
+from contactsense_studies.real_arm.monitors import (
+    MARGIN,
+    MONITORS,
+    REACTION,
+    SETTLING,
+    Heard,
+    hear,
+    thresholds,
+)
 from contactsense_studies.real_arm.options import Options
-from contactsense_studies.real_arm.records import record
+from contactsense_studies.real_arm.plots import PICTURES
+from contactsense_studies.real_arm.records import DT, record
 from contactsense_studies.real_arm.score import BANDS, detection, false_onsets, in_band
 from contactsense_studies.real_arm.study import Study, run, trial_seed
 
@@ -55,7 +64,7 @@ def heard(run: sim.ImperfectRun, *onsets: float, collision: tuple[float, float] 
 
 def judged(force: float, delay: float | None, signal: float = 10.0) -> JudgedContact:
     return JudgedContact(
-        "iiwa_link_6", force, 0.5, signal, {"calibrated": delay}, {"calibrated": delay is None}
+        "iiwa_link_6", force, 0.5, signal, {"calibrated": delay}, {"calibrated": delay is None}, {}
     )
 
 
@@ -138,6 +147,19 @@ def test_a_calibration_quiets_the_arm(short: Study) -> None:
     assert [trial.stretch is None for trial in short.trials] == [False, True]
 
 
+def test_what_is_detected_is_judged_from_a_report_of_its_own(short: Study) -> None:
+    contacts = [(each, name) for trial in short.trials for each in trial.contacts for name in MONITORS]
+    found = [(each, name, each.estimates[name]) for each, name in contacts if each.estimates[name]]
+    assert [each for each, name, _ in found if name == "calibrated"]
+    for each, name, estimate in found:
+        assert estimate is not None
+        assert each.delays[name] is not None
+        assert 0.0 <= estimate.age <= min(REACTION, each.duration) + DT
+        assert estimate.link in IIWA.link_names
+        assert (estimate.steps == 0) == (estimate.link == each.link)
+        assert not estimate.located or np.isfinite(estimate.error)
+
+
 def test_the_number_of_processes_changes_nothing(short: Study) -> None:
     again = run(SHORT, processes=1)
     assert json.dumps(plain(again)) == json.dumps(plain(short))
@@ -188,12 +210,16 @@ def test_the_command_prints_and_draws(tmp_path: Path, capsys: pytest.CaptureFixt
     (trial,) = arm["trials"]
     assert trial["errors"]["encoder_bits"] == 17
     assert len(trial["contacts"]) == 2
-    assert set(trial["contacts"][0]["delays"]) == set(MONITORS)
-    assert (tmp_path / "real_arm.png").read_bytes().startswith(b"\x89PNG")
+    assert set(trial["contacts"][0]["delays"]) == set(trial["contacts"][0]["estimates"]) == set(MONITORS)
+    assert set(arm["localization"]) == set(arm["reliability"]) == set(arm["named_links"]) == set(MONITORS)
+    for name in PICTURES:
+        assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
     assert command(["study", "real_arm", *options]) == 0
     told = capsys.readouterr().out
     assert "Contacts of 5 to 40 N" in told
-    assert "Motion without contact" in told
+    for title in ("Motion without contact", "Links of the detected", "Points of the detected"):
+        assert title in told
+    assert max(map(len, told[: told.index("A: ")].splitlines())) <= 80
 
 
 @pytest.mark.parametrize(

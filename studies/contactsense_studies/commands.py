@@ -93,6 +93,6 @@ add_study(
 add_study(
     app,
     "real_arm",
-    "Contacts on arms with the errors of real ones: detection and false onsets before and after calibration.",
+    "Contacts on arms with the errors of real ones: detection and location before and after calibration.",
     RealArmOptions,
 )

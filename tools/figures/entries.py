@@ -105,6 +105,16 @@ FIGURES = (
         long=True,
     ),
     Figure(
+        "real_arm_localization",
+        "Where the calibrated monitor finds contacts on simulated arms with the errors of real ones.",
+        (*STUDY, "real_arm", "--json"),
+        "Shares of the detected of 180 contacts an arm; three arms of each kind, pooled.",
+        "docs/real_arm.md",
+        reduce=real_arm.reduce_localization,
+        table=real_arm.localization_table,
+        long=True,
+    ),
+    Figure(
         "speed",
         "Time of a call beside other libraries, on an idle machine.",
         (*PYTHON, "benches.compare", "--wall", "--json"),

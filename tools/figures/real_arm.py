@@ -19,6 +19,19 @@ HEADER = (
     "time with a false report",
     "false onsets after each contact",
 )
+LOCALIZATION_HEADER = (
+    "arm",
+    "detected",
+    "link exact",
+    "within one link",
+    "with a point",
+    "error, median; 90 %",
+    "located",
+    "wrong of these",
+    "90 % region: coverage",
+    "its radius, median; 90 %",
+    "calibration error of the link",
+)
 MONITORS = {"default": "default thresholds", "thresholds": "its own thresholds", "calibrated": "calibrated"}
 
 
@@ -59,3 +72,37 @@ def _row(arm: str, name: str, figures: Any) -> list[str]:
         percent(false["collision"]),
         number(false["per_contact"]),
     ]
+
+
+def reduce_localization(raw: Raw) -> dict[str, Any]:
+    """Where the calibrated monitor found the contacts of each arm, and of all."""
+    (study,) = raw[""]
+    arms = {**study["arms"], "all": study["all"]}
+    return {name: figures["localization"]["calibrated"] for name, figures in arms.items()}
+
+
+def localization_table(result: Any) -> str:
+    """One row for an arm."""
+    return markdown(LOCALIZATION_HEADER, (_localization_row(arm, each) for arm, each in result.items()))
+
+
+def _localization_row(arm: str, figures: Any) -> list[str]:
+    _, middle, most = figures["region_radius"]
+    error = figures["calibration_error"]
+    return [
+        arm,
+        str(figures["detected"]),
+        *(_share(figures[key]) for key in ("exact", "within_one", "point")),
+        _lengths(figures["error"], figures["error_90"]),
+        *(_share(figures[key]) for key in ("located", "located_wrong", "coverage")),
+        _lengths(middle, most),
+        "-" if error is None else f"{error:.3f}",
+    ]
+
+
+def _share(value: float | None) -> str:
+    return "-" if value is None else percent(value)
+
+
+def _lengths(middle: float | None, most: float | None) -> str:
+    return "-" if middle is None or most is None else f"{100 * middle:.1f}; {100 * most:.1f} cm"

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from contactsense.sim import ImperfectRun, RecordedContact
 
+from .chain import Chain
+from .estimate import JudgedEstimate, judge_estimate
 from .monitors import SETTLING, Heard
 
 # After a contact the observer's output falls with its time constant: an onset then is not counted as one of
@@ -19,7 +21,7 @@ LINGERING = 0.1
 
 @dataclass(frozen=True)
 class JudgedContact:
-    """One contact: the truth, and how long each monitor took."""
+    """One contact: the truth, how long each monitor took, and where it found the contact."""
 
     link: str
     force: float  # the largest [N]
@@ -30,6 +32,8 @@ class JudgedContact:
     delays: dict[str, float | None]  # by monitor, from the start of the force to an onset [s]; None: missed
     # By monitor, whether a contact was reported already when this one began, so that it could give no onset.
     reported_before: dict[str, bool]
+    # By monitor; None where it was missed, or no report had a contact.
+    estimates: dict[str, JudgedEstimate | None]
 
 
 @dataclass(frozen=True)
@@ -46,7 +50,11 @@ class FreeMotion:
 
 
 def judge_contacts(run: ImperfectRun, heard: Mapping[str, Heard]) -> tuple[JudgedContact, ...]:
-    """A contact is detected if an onset falls into it."""
+    """A contact is detected if an onset falls into it.
+
+    Its place is judged by the last report with a contact before it ends, at most `REACTION` after the onset.
+    """
+    chain = Chain(run.truth.robot)
     noise = run.truth.arm.per_joint("torque_noise", run.truth.robot.nv)
     return tuple(
         JudgedContact(
@@ -58,9 +66,15 @@ def judge_contacts(run: ImperfectRun, heard: Mapping[str, Heard]) -> tuple[Judge
             reported_before={
                 name: bool(told.collision[max(each.rows.start - 1, 0)]) for name, told in heard.items()
             },
+            estimates={name: _estimate(run, chain, told, number) for name, told in heard.items()},
         )
-        for each in run.truth.contacts
+        for number, each in enumerate(run.truth.contacts)
     )
+
+
+def _estimate(run: ImperfectRun, chain: Chain, heard: Heard, number: int) -> JudgedEstimate | None:
+    latest = heard.latest.get(number)
+    return None if latest is None else judge_estimate(run, chain, run.truth.contacts[number], latest)
 
 
 def _delay(run: ImperfectRun, heard: Heard, contact: RecordedContact) -> float | None:

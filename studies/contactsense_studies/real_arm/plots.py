@@ -1,4 +1,4 @@
-"""The picture."""
+"""The pictures."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from ..harness import Pictures
+from .plot_localization import draw_localization
 from .plot_rates import draw_between, draw_delays, draw_detection, draw_false_onsets, draw_time_in_contact
 from .plot_stretch import draw_stretches
 from .study import Study
@@ -42,4 +43,7 @@ def draw(figure: Figure, study: Study) -> None:
     draw_stretches(stretches, shown[:1] if len(shown) < 2 else [shown[0], shown[-1]])
 
 
-PICTURES: Pictures = {"real_arm.png": ((19.0, 12.5), draw)}
+PICTURES: Pictures = {
+    "real_arm.png": ((19.0, 12.5), draw),
+    "real_arm_localization.png": ((16.0, 9.5), draw_localization),
+}

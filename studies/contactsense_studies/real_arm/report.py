@@ -15,6 +15,8 @@ from .arms import ARMS, described
 from .judge import JudgedContact
 from .monitors import MARGIN, MONITORS, TITLES
 from .records import FORCE
+from .report_localization import NOTES as LOCALIZATION_NOTES
+from .report_localization import localization_tables, named_links_table
 from .score import (
     BANDS,
     IN_TORQUES,
@@ -41,6 +43,7 @@ NOTES = (
     "before: a contact was reported already when this one began, so that it gives no onset.",
     "free: motion without contact. between: from 0.1 s after a contact to the next. Hysteresis keeps torque",
     "after a contact, which may be over a threshold.",
+    *LOCALIZATION_NOTES,
 )
 
 
@@ -49,9 +52,11 @@ def print_study(study: Study, console: Console) -> None:
     arms = [name for name in study.arms if study.of(name)]
     tables = [
         _detection(study, arms),
+        *localization_tables(_groups(study, arms), LETTERS),
         _free(study, arms),
         _forces(study, arms),
         *(_links(name, contacts_of(study.of(name))) for name in arms),
+        *(named_links_table(name, study.of(name)) for name in arms),
         *(_torques(name, study.of(name)) for name in arms),
     ]
     print_tables(console, tables, NOTES)

@@ -90,7 +90,8 @@ def _trial(item: Item) -> Trial:
     records = record(robot, arm, options, seed)
     monitors: dict[str, Any] = settings(robot, records.everyday, calibrate(robot, records.exciting))
     heard_free = {each: hear(robot, records.free.log, **given) for each, given in monitors.items()}
-    heard = {each: hear(robot, records.contacts.log, **given) for each, given in monitors.items()}
+    touched = [each.rows for each in records.contacts.truth.contacts]
+    heard = {each: hear(robot, records.contacts.log, touched, **given) for each, given in monitors.items()}
     free = {
         each: judge_free(records.free, heard_free[each], records.contacts, heard[each]) for each in monitors
     }
