@@ -29,4 +29,4 @@ mod torque;
 pub use error::{Error, Result};
 pub use nalgebra;
 pub use sample::{ExternalSample, Sample};
-pub use torque::NoiseModel;
+pub use torque::{best_cone_force, ConeForce, ConePart, NoiseModel};

@@ -1,5 +1,6 @@
 //! What explains an external torque: how large its errors are, and what a force at a surface point does to the joints.
 
+mod cone;
 mod error_variances;
 mod fit;
 mod force_model;
@@ -8,6 +9,7 @@ mod link_target;
 mod noise_model;
 mod target;
 
+pub use cone::{best_cone_force, ConeForce, ConePart};
 pub(crate) use error_variances::{ErrorVariances, SlowNoise};
 pub(crate) use fit::{BestForce, NormalFit};
 pub(crate) use force_model::directions;
