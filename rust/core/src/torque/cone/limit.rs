@@ -116,7 +116,7 @@ impl Misfit {
             // What is explained, product^2 / gain, is most where its slope is zero.
             let slope = dp * gain - product * dg;
             let curvature = (h - product) * gain + dp * dg - product * ddg;
-            if !(curvature < 0.0) {
+            if curvature.is_nan() || curvature >= 0.0 {
                 break;
             }
             let step = -slope / curvature;

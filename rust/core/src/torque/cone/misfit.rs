@@ -81,8 +81,9 @@ impl Misfit {
         let pivot = shown.unwrap_or_else(|| ridged.free_gain().max(RIDGE));
         let free = ridged.free(pivot);
         if is_inside(&free) {
+            let refinements = if shown.is_some() { 0 } else { REFINEMENTS };
             let mut force = free;
-            for _ in 0..if shown.is_some() { 0 } else { REFINEMENTS } {
+            for _ in 0..refinements {
                 force = Some(self.refined(&force, &ridged, pivot)).filter(is_inside).unwrap_or(force);
             }
             return (force, ConePart::Interior);
