@@ -23,8 +23,8 @@ const MOST_TRIALS: usize = 60;
 const MOST_TURNS: usize = 6;
 /// Share that a multiplier is known to when the direction takes over, which converges quadratically.
 const CLOSE: f64 = 1e-5;
-/// A turn after which another one would be below rounding (rad).
-const LAST_TURN: f64 = 1e-8;
+/// A turn after which another one, about as large as its square, is of no account (rad).
+const LAST_TURN: f64 = 1e-6;
 /// Cosine of a turn that only refines a direction, and what another one explains at least, beside a direction's.
 const NEAR: f64 = 1.0 - 1e-6;
 const GAIN: f64 = 1.0 + 1e-10;
@@ -134,7 +134,7 @@ impl Misfit {
         }
     }
 
-    /// The same unless that turns far and gains nothing: of directions that explain the same, the one given is kept.
+    /// The same, unless it turns far and gains nothing: of directions that explain the same, the one given is kept.
     pub(super) fn improved(&self, direction: [f64; 2]) -> [f64; 2] {
         let turned = self.turned(direction);
         let is_near = dot(turned, direction) > NEAR;

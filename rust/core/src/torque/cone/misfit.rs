@@ -89,9 +89,9 @@ impl Misfit {
             return (force, ConePart::Interior);
         }
         let (own, ridged) = (self.in_units_of(friction), ridged.in_units_of(friction));
-        let direction = if friction > 0.0 { ridged.turned(ridged.limit()) } else { [1.0, 0.0] };
+        let direction = if friction > 0.0 { ridged.limit() } else { [1.0, 0.0] };
         let misfit = if own.shows(direction) { own } else { ridged };
-        let [x, y] = if shown.is_some() { direction } else { misfit.improved(direction) };
+        let [x, y] = if shown.is_some() { misfit.turned(direction) } else { misfit.improved(direction) };
         let (gain, product) = misfit.along([x, y]);
         let force = (product / gain).max(0.0);
         ([force, friction * force * x, friction * force * y], ConePart::Boundary)
