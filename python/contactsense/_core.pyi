@@ -41,6 +41,7 @@ __all__ = [
     "SurfaceSamples",
     "ToolLoad",
     "__version__",
+    "_best_cone_forces",
     "_calibrate",
     "_checked_urdf",
     "_restore",
@@ -70,6 +71,12 @@ class InputError(ContactSenseError, ValueError):
     The object's state is as it was before the call. Also raised where another thread is using the object.
     """
 
+def _best_cone_forces(
+    grams: ArrayLike, products: ArrayLike, frictions: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.float64], list[str]]:
+    """Forces `(n, 3)`, objectives `(n,)` and parts of the cone; a problem a row, of Gram matrices by rows, `(n, 9)`, products
+    `(n, 3)` and friction coefficients `(n,)`.
+    """
 def _restore(kind: str, version: str, content: Any) -> Any:
     """Restores what `pickle` or `copy` has taken apart."""
 

@@ -31,4 +31,4 @@ mod tracking;
 pub use error::{Error, Result};
 pub use nalgebra;
 pub use sample::{ExternalSample, Sample};
-pub use torque::NoiseModel;
+pub use torque::{best_cone_force, ConeForce, ConePart, NoiseModel};

@@ -11,6 +11,7 @@ mod calibration;
 mod calibration_parts;
 mod columns;
 mod compensator;
+mod cone;
 mod contact;
 mod contact_map;
 mod description;
@@ -49,6 +50,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(urdf::_checked_urdf, module)?)?;
     module.add_function(wrap_pyfunction!(urdf::_robot_from_urdf, module)?)?;
     module.add_function(wrap_pyfunction!(pickle::_restore, module)?)?;
+    module.add_function(wrap_pyfunction!(cone::_best_cone_forces, module)?)?;
     module.add_function(wrap_pyfunction!(diagnosis::diagnose, module)?)?;
     module.add_class::<robot::PyRobot>()?;
     module.add_class::<surface::PySurface>()?;

@@ -1,5 +1,6 @@
 //! What explains an external torque: how large its errors are, and what a force at a surface point does to the joints.
 
+mod cone;
 mod error_variances;
 mod fit;
 mod force_model;
@@ -9,6 +10,7 @@ mod noise_model;
 mod push_likelihood;
 mod target;
 
+pub use cone::{best_cone_force, ConeForce, ConePart};
 pub(crate) use error_variances::{ErrorVariances, SlowNoise};
 pub(crate) use fit::{BestForce, NormalFit};
 pub(crate) use force_model::directions;
