@@ -249,7 +249,7 @@ impl Spread {
 }
 
 /// A joint that nothing is left of has errors of rounding (Nm).
-const SMALLEST: f64 = 1e-6;
+pub(super) const SMALLEST: f64 = 1e-6;
 
 #[cfg(test)]
 mod tests {

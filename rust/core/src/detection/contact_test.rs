@@ -185,20 +185,9 @@ impl ContactTest {
     }
 
     /// Compares the torques without bias with their errors, with a lower level where a contact goes on; `torque` `(nv,)` is
-    /// the one to look at without a bank.
+    /// the one to look at without a bank. What is in free directions does not count.
     #[inline]
-    pub fn evaluate(&mut self, torque: &[f64], in_contact: bool) {
-        self.evaluate_beside(torque, in_contact, None);
-    }
-
-    /// The same where what is in free directions does not count.
-    #[inline]
-    pub fn evaluate_beside(
-        &mut self,
-        torque: &[f64],
-        in_contact: bool,
-        mut free: Option<&mut FreeDirections>,
-    ) {
+    pub fn evaluate(&mut self, torque: &[f64], in_contact: bool, mut free: Option<&mut FreeDirections>) {
         let share = if in_contact { SUSPICIOUS } else { 1.0 };
         let Self { bank, signals, slow, without_bias, followed, joints, .. } = self;
         self.suspicious = false;
@@ -262,7 +251,7 @@ impl ContactTest {
         &self.followed
     }
 
-    /// The gains of the bank (1/s); none without one.
+    /// The gains of the bank, slow to fast (1/s); none without one.
     pub fn gains(&self) -> &[f64] {
         self.bank.as_ref().map_or(&[], ObserverBank::gains)
     }
@@ -272,11 +261,6 @@ impl ContactTest {
         if let Some(signal) = self.signals.first_mut() {
             free.leave(0, &mut signal.whitening, torque);
         }
-    }
-
-    /// The slowest gain of the bank (1/s); none without one.
-    pub fn slowest_gain(&self) -> Option<f64> {
-        self.bank.as_ref().map(ObserverBank::slowest_gain)
     }
 
     /// Whether one is so large that slow errors are not followed.

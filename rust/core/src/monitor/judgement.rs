@@ -16,7 +16,7 @@ impl ContactMonitor {
         *remainder_learned = false;
         leave_out(sensing, collision_torque, Some(test.slow().bias()));
         test.advance(observer.kinematics(), observer.velocity(), observer.unexplained(), step);
-        test.evaluate_beside(collision_torque, detector.collision(), free.if_any());
+        test.evaluate(collision_torque, detector.collision(), free.if_any());
         let touched = detector.collision() || felt || test.suspicious();
         if touched && !new {
             release.interrupt();
@@ -26,7 +26,7 @@ impl ContactMonitor {
                 test.slow_mut().set(release.remainder());
                 release.reset();
                 detector.reset();
-                test.evaluate_beside(collision_torque, false, free.if_any());
+                test.evaluate(collision_torque, false, free.if_any());
                 *remainder_learned = true;
             }
         } else {

@@ -52,11 +52,6 @@ impl ObserverBank {
         &self.gains
     }
 
-    /// The first gain (1/s).
-    pub fn slowest_gain(&self) -> f64 {
-        self.gains[0]
-    }
-
     /// Forgets all steps.
     pub fn reset(&mut self) {
         self.torques.iter_mut().for_each(|torque| torque.fill(0.0));
