@@ -59,7 +59,9 @@ pub(super) fn rest_errors(
     coulomb: &[f64],
     mut noise: NoiseModel,
 ) -> Result<(NoiseModel, Vec<Tail>)> {
-    let gains: Vec<f64> = GAINS.into_iter().filter(|gain| gain * step <= LARGEST_STEP).collect();
+    // Torques that are given need no observer: a low-pass follows them at any step.
+    let external = parts.iter().all(|part| part.robot.is_none());
+    let gains: Vec<f64> = GAINS.into_iter().filter(|gain| external || gain * step <= LARGEST_STEP).collect();
     let rms = |j: usize| {
         let squares = (0..log.len()).map(|row| log.tau_of(row)[j].powi(2)).sum::<f64>();
         (squares / log.len() as f64).sqrt()
