@@ -92,6 +92,19 @@ def test_bias_friction_and_rotors() -> None:
         assert (std > 0.0).all()
 
 
+def test_slow_errors_of_short_stretches_keep_their_estimate() -> None:
+    # A pause every 0.9 s: no stretch is long enough to follow slow errors in.
+    time = motion().time + np.floor(motion().time / 0.9)
+    errors = 0.3 * np.sin(7.0 * motion().time)[:, np.newaxis]
+    tau = torques() + errors + white(0.02)
+    calibration = cs.calibrate(IIWA, cs.Log(time, motion().q, motion().v, tau))
+    # The errors have a root mean square of 0.21 Nm.
+    assert ((calibration.noise.model > 0.1) & (calibration.noise.model < 1.0)).all()
+    # A joint without any error still has errors of rounding.
+    exact = cs.calibrate(IIWA, log(torques()))
+    assert (exact.noise.model >= 1e-6).all()
+
+
 def kept_back(torque: np.ndarray, width: np.ndarray) -> np.ndarray:
     """What one element that follows the torque up to a width either way holds."""
     state, held = np.zeros(torque.shape[1]), np.zeros_like(torque)

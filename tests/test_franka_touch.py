@@ -15,6 +15,7 @@ import contactsense as cs
 from contactsense._extras import MissingExtraError
 from contactsense.cli.app import run as run_cli
 from contactsense_studies.franka_touch import study
+from contactsense_studies.franka_touch.calibrated import calibration_of, untouched
 from contactsense_studies.franka_touch.logs import COLUMNS, log_of_table, read_logs
 from contactsense_studies.franka_touch.replay import Replay, replay
 from contactsense_studies.franka_touch.settings import MEASURED, VENDOR, Settings
@@ -119,6 +120,24 @@ def test_vendor_torque_goes_through_unchanged(robot: cs.Robot) -> None:
     assert told.external_torque[strongest] == pytest.approx(expected, abs=5e-3)
 
 
+def test_untouched_stretches_of_other_logs(robot: cs.Robot) -> None:
+    log = log_of_table("d5", made_up(robot, kept=0.0), "here")
+    free = untouched(log)
+    assert not free[log.label].any()
+    assert not free[round((STARTS[1] - EARLY + 0.01) / DT) : round(STARTS[1] / DT)].any()
+    assert free[round((STARTS[0] + 0.51) / DT) : round((STARTS[1] - EARLY - 0.01) / DT)].all()
+    calibration = calibration_of(robot, [log] * 4)
+    assert calibration.torque_is_external
+    # Half of the rows repeat; stretches begin and end anywhere.
+    assert (calibration.noise.torque < 1.5 * NOISE).all()
+    evaluation = study.evaluate_calibrated(
+        robot, [replace(log, name=name) for name in ("d1", "d2", "d3", "d4", "d5")]
+    )
+    assert evaluation is not None
+    assert (evaluation.overall.detected, evaluation.overall.false_alarms) == (15, 0)
+    assert study.evaluate_calibrated(robot, [log]) is None
+
+
 def test_bad_data_is_refused(tmp_path: Path, robot: cs.Robot, capsys: pytest.CaptureFixture[str]) -> None:
     rows = made_up(robot)[::20]
     bad: dict[str, tuple[np.ndarray, tuple[str, ...], str]] = {
@@ -166,6 +185,18 @@ def test_real_touches_are_all_felt(real: study.Study) -> None:
         assert figures.early <= 2
         assert figures.delay_median < 0.055
         assert figures.delay_max < 0.1
+
+
+@pytest.mark.shared
+def test_real_touches_with_noise_of_other_logs(real: study.Study) -> None:
+    # 122 of 122 after 65 ms, no false onset, with no setting chosen on any of the logs.
+    assert real.calibrated is not None
+    figures = real.calibrated.overall
+    assert figures.detected >= 0.97 * figures.touches
+    assert figures.false_alarms <= 1
+    assert figures.early <= 3
+    assert figures.delay_median < 0.075
+    assert figures.overrun < 0.1
 
 
 @pytest.mark.shared

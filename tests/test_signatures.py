@@ -57,6 +57,7 @@ SIGNATURES = {
     "ContactMonitor.update_external": "q, tau_ext, wrenches=None, *, v=None, dt=None",
     "ContactMonitor.set_payload": "link, mass, com",
     "ContactMonitor.clear_payload": "",
+    "ContactMonitor.tare": "",
     "ContactMonitor.reset": "",
     "ContactParticleFilter": "robot, *, particles=10_000, motion='curvature', measurement='normal', "
     "friction=0.5, "

@@ -1609,7 +1609,7 @@ class ContactMonitor:
     ) -> Self: ...
     @property
     def sensors(self) -> tuple[ForceTorqueSensor, ...]:
-        """The sensors, of `ForceTorqueSensor`, in the order of the readings."""
+        """The sensors, of `ForceTorqueSensor`, in the order of the readings, with the offsets that are subtracted now."""
     @property
     def torque_threshold(self) -> NDArray[np.float64]:
         """Thresholds on the torques, `(nv,)` [Nm; N for sliding joints]; a read-only copy.
@@ -1735,8 +1735,32 @@ class ContactMonitor:
 
         As `set_payload`. Not for the control loop: it frees memory.
         """
+    def tare(self) -> None:
+        """Makes zero of what the robot reads now: it is untouched and at rest.
+
+        The offsets of the sensors and the bias become what the last 0.25 s showed, without following it any longer. A sensor
+        without readings keeps its offset. `sensors` and `bias` are the new ones; `reset()` forgets the bias, not the offsets.
+        A contact that has been reported ever since the first call or `reset()` may be a bias or an offset, and ends.
+        Where a tool is not in the model, see `identify_tool`. Not for the control loop: it allocates.
+
+        Raises:
+            InputError: The observers do not know the torque yet (5 time constants of the slowest); there is a contact that
+                began after a time without; the bias is beyond `bias_limit`. Nothing is then changed.
+
+        Example:
+            >>> import contactsense as cs, numpy as np
+            >>> robot = cs.Robot.named("iiwa14")
+            >>> q, v = np.full(7, 0.4), np.zeros(7)
+            >>> tau = robot.inverse_dynamics(q, v, v) + 0.3
+            >>> monitor = cs.ContactMonitor(robot, dt=1e-3)
+            >>> for _ in range(200):
+            ...     report = monitor.update(q, v, tau)
+            >>> monitor.tare()
+            >>> bool(abs(monitor.update(q, v, tau).external_torque).max() < 1e-3)
+            True
+        """
     def reset(self) -> None:
-        """Forgets all ticks, the bias too; torques may then come from another source. A payload stays."""
+        """Forgets all ticks, the bias too; torques may then come from another source. A payload and offsets of sensors stay."""
     @property
     def robot(self) -> Robot:
         """The robot that is monitored, with the payload that was set."""
@@ -1745,7 +1769,7 @@ class ContactMonitor:
         """Time between two calls that is assumed where `update` is given none [s]."""
     @property
     def bias(self) -> NDArray[np.float64]:
-        """The bias that is subtracted, `(nv,)` [Nm; N for sliding joints]; zeros without `bias_time_constant`; read-only."""
+        """The bias that is subtracted, `(nv,)` [Nm; N for sliding joints]; zeros without `bias_time_constant` and `tare()`; read-only."""
 
 @final
 class ContactReport:

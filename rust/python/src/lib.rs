@@ -23,6 +23,7 @@ mod isolator;
 mod monitor;
 mod monitor_external;
 mod monitor_payload;
+mod monitor_tare;
 mod motion;
 mod names;
 mod noise;

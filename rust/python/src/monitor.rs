@@ -3,7 +3,6 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use contactsense::monitor::{ContactMonitor, MonitorOptions};
-use contactsense::sensor::ForceTorqueSensor;
 use contactsense::Sample;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -78,7 +77,6 @@ pub struct PyContactMonitor {
     robot: Mutex<Py<PyRobot>>,
     monitor: Mutex<ContactMonitor>,
     pub(crate) names: Arc<Names>,
-    sensors: Vec<ForceTorqueSensor>,
 }
 
 impl PyContactMonitor {
@@ -168,9 +166,8 @@ impl PyContactMonitor {
         let monitor = ContactMonitor::new(robot.get().0.clone(), &options);
         let monitor = monitor.map_err(|error| to_python(robot.py(), error))?;
         let names = Names::new(&robot.get().0, monitor.sensor_names());
-        let sensors = options.isolation.sensors;
         let loaded = Mutex::new(robot.clone().unbind());
-        Ok(Self { unloaded: robot.unbind(), robot: loaded, names, sensors, monitor: Mutex::new(monitor) })
+        Ok(Self { unloaded: robot.unbind(), robot: loaded, names, monitor: Mutex::new(monitor) })
     }
 
     /// Takes in one tick.
@@ -248,13 +245,13 @@ impl PyContactMonitor {
         Ok(self.sole(py)?.dt())
     }
 
-    /// The sensors, of `ForceTorqueSensor`, in the order of the readings.
+    /// The sensors, of `ForceTorqueSensor`, in the order of the readings, with the offsets that are subtracted now.
     #[getter]
     fn sensors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        sensor_tuple(py, &self.sensors)
+        sensor_tuple(py, self.sole(py)?.sensors())
     }
 
-    /// The bias that is subtracted, `(nv,)` [Nm; N for sliding joints]; zeros without `bias_time_constant`; read-only.
+    /// The bias that is subtracted, `(nv,)` [Nm; N for sliding joints]; zeros without `bias_time_constant` and `tare()`; read-only.
     #[getter]
     fn bias<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let monitor = self.sole(py)?;
@@ -323,14 +320,15 @@ impl PyContactMonitor {
         self.sole(py)?.set_wrench_gain(gain).map_err(|error| to_python(py, error))
     }
 
-    /// Forgets all ticks, the bias too; torques may then come from another source. A payload stays.
+    /// Forgets all ticks, the bias too; torques may then come from another source. A payload and offsets of sensors stay.
     fn reset(&self, py: Python<'_>) -> PyResult<()> {
         self.sole(py)?.reset();
         Ok(())
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let (monitor, sensors) = (self.sole(py)?, self.sensors.len());
-        Ok(format!("ContactMonitor('{}', dt={:?}, {sensors} sensors)", monitor.robot().name(), monitor.dt()))
+        let monitor = self.sole(py)?;
+        let (name, dt, sensors) = (monitor.robot().name(), monitor.dt(), monitor.sensors().len());
+        Ok(format!("ContactMonitor('{name}', dt={dt:?}, {sensors} sensors)"))
     }
 }

@@ -15,7 +15,11 @@ from .study import Evaluation, Study
 from .summary import Summary, most_frequent, summarise
 from .touches import EARLY, TouchResult
 
-SOURCES = {"measured": "momentum observer on measured torques", "vendor": "the vendor's external torque"}
+SOURCES = {
+    "measured": "momentum observer on measured torques",
+    "vendor": "the vendor's external torque",
+    "calibrated": "the vendor's torque, calibrated",
+}
 FIGURES = (
     *("detec-\nted", "early", "onset\nms", "false\n/min", "cor-\nrect"),
     *("or\nnext", "most\noften", "share", "loca-\nted", "spread\nmm"),
@@ -23,11 +27,12 @@ FIGURES = (
 
 
 def print_study(study: Study, console: Console, *, touches: bool = False) -> None:
-    """Both evaluations as tables, and how to read them; `touches` adds a table of every touch."""
-    tables = [table(evaluation) for evaluation in (study.measured, study.vendor)]
+    """All evaluations as tables, and how to read them; `touches` adds a table of every touch."""
+    tables = [table(evaluation) for evaluation in study.evaluations]
     repeated = np.mean([log.repeated for log in study.logs])
     notes = (
-        "* The settings were chosen with these files alone.",
+        "* The settings were chosen with these files alone; calibrated: detection has no setting,",
+        "and noise and levels come from the untouched stretches of the other files.",
         "Onset: delay of the detection after the start of the label, median/maximum. Labels",
         f"were set by hand: an onset up to {EARLY:g} s earlier belongs to the contact (early).",
         "False: onsets at any other time, per minute of that time.",
@@ -99,6 +104,7 @@ def as_data(study: Study) -> dict[str, Any]:
         "study": "franka_touch",
         "measured": _evaluation_data(study.measured),
         "vendor": _evaluation_data(study.vendor),
+        "calibrated": None if study.calibrated is None else _evaluation_data(study.calibrated),
     }
 
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from .logs import FloatArray
 
-# Momentum observer on measured torques, or the external torque that the vendor computes.
-Source = Literal["measured", "vendor"]
+# Momentum observer on measured torques; the external torque that the vendor computes; that, calibrated.
+Source = Literal["measured", "vendor", "calibrated"]
 
 # The marks farthest from the base and nearest to it. Settings come from these alone; the rest is held out.
 TUNING_FILES = ("a4", "f2")
@@ -57,4 +57,14 @@ VENDOR = Settings(
     isolation_factor=5.0,
     hold_time=0.02,
     bias_time_constant=0.5,
+)
+# Nothing is chosen: defaults, and the thresholds of each log's calibration in place of the noise.
+CALIBRATED = Settings(
+    source="calibrated",
+    noise=(0.0,) * 7,
+    observer_gain=50.0,
+    detection_factor=1.0,
+    isolation_factor=1.0,
+    hold_time=0.02,
+    bias_time_constant=3.0,
 )

@@ -1,4 +1,4 @@
-"""The study: all logs, the library's external torque beside the vendor's."""
+"""The study: all logs, the library's external torque beside the vendor's, as it comes and calibrated."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from contactsense import InputError, Robot
 
 from ..example_robots import panda
+from .calibrated import replay_by_others
 from .logs import TouchLog, read_logs
 from .replay import Replay, replay
-from .settings import MEASURED, TUNING_FILES, VENDOR, Settings
+from .settings import CALIBRATED, MEASURED, TUNING_FILES, VENDOR, Settings
 from .summary import Summary, summarise
 from .touches import LogResult, judge
 from .tuning import choose_settings
@@ -38,21 +39,45 @@ class Evaluation:
 
 @dataclass(frozen=True)
 class Study:
-    """Both evaluations of the same logs."""
+    """All evaluations of the same logs; `calibrated` is None if a calibration needs more logs."""
 
     logs: tuple[TouchLog, ...]
     measured: Evaluation
     vendor: Evaluation
+    calibrated: Evaluation | None
+
+    @property
+    def evaluations(self) -> tuple[Evaluation, ...]:
+        """Those there are."""
+        return tuple(it for it in (self.measured, self.vendor, self.calibrated) if it is not None)
 
 
 def evaluate(robot: Robot, logs: Sequence[TouchLog], settings: Settings) -> Evaluation:
     """Runs the monitor over the logs and judges every touch."""
-    replays = tuple(replay(robot, log, settings) for log in logs)
-    judged = tuple(
-        judge(robot, log, told, settings, log.name in TUNING_FILES)
-        for log, told in zip(logs, replays, strict=True)
-    )
-    return Evaluation(settings, replays, judged)
+    replays = [replay(robot, log, settings) for log in logs]
+    return _judged(robot, logs, settings, [(told, settings) for told in replays])
+
+
+def evaluate_calibrated(robot: Robot, logs: Sequence[TouchLog]) -> Evaluation | None:
+    """Each log with noise and levels of the others; None if a calibration needs more of them."""
+    try:
+        replays = replay_by_others(robot, logs)
+    except InputError:
+        return None
+    return _judged(robot, logs, CALIBRATED, replays)
+
+
+def _judged(
+    robot: Robot,
+    logs: Sequence[TouchLog],
+    settings: Settings,
+    replays: Sequence[tuple[Replay, Settings]],
+) -> Evaluation:
+    results = [
+        judge(robot, log, told, own, log.name in TUNING_FILES)
+        for log, (told, own) in zip(logs, replays, strict=True)
+    ]
+    return Evaluation(settings, tuple(told for told, _ in replays), tuple(results))
 
 
 def run(data: str | os.PathLike[str], *, tune: bool = False, plot_log: str | None = None) -> Study:
@@ -70,4 +95,9 @@ def run(data: str | os.PathLike[str], *, tune: bool = False, plot_log: str | Non
     measured, vendor = MEASURED, VENDOR
     if tune:
         measured, vendor = (choose_settings(robot, logs, source) for source in ("measured", "vendor"))
-    return Study(tuple(logs), evaluate(robot, logs, measured), evaluate(robot, logs, vendor))
+    return Study(
+        tuple(logs),
+        evaluate(robot, logs, measured),
+        evaluate(robot, logs, vendor),
+        evaluate_calibrated(robot, logs),
+    )

@@ -63,7 +63,7 @@ pub fn calibrate(robot: &Robot, log: &Log<'_>, options: &CalibrationOptions) -> 
     };
     let tau = multiplied(log.tau, &scales);
     let log = Log { tau: &tau, ..*log };
-    let fit = Fit::of(robot, &Log { v: &v, ..log }, options, &filter, velocity_delay)?;
+    let fit = Fit::of(robot, &Log { v: &v, ..log }, options, &filter, velocity_delay, step)?;
     Ok(Calibration { torque_scale: scales, ..fit.calibration(robot, &log, options, step)? })
 }
 
@@ -88,6 +88,7 @@ impl Fit {
         options: &CalibrationOptions,
         filter: &Filter,
         velocity_delay: f64,
+        step: f64,
     ) -> Result<Self> {
         let mut rows = enough_rows(robot, log, filter)?;
         if options.torque_is_external {
@@ -105,7 +106,7 @@ impl Fit {
         let weights = (0..nv).map(|j| weight(&unexplained, &used, j)).collect();
         let deviations = torque_deviations(robot, log);
         let clear = (0..nv).map(|j| {
-            let noise = CLEAR_OF_NOISE * white(|k| log.tau_of(k)[j], log.len());
+            let noise = CLEAR_OF_NOISE * white(|k| log.tau_of(k)[j], log.time, step);
             WIDTHS
                 .iter()
                 .position(|width| width * deviations[j] > noise)

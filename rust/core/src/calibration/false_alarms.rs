@@ -11,7 +11,8 @@ impl Calibration {
             [] => GAINS.to_vec(),
             tails => tails.iter().map(|tail| tail.gain).collect(),
         };
-        let gains: Vec<f64> = known.into_iter().filter(|gain| gain * dt <= LARGEST_STEP).collect();
+        let gains: Vec<f64> =
+            known.into_iter().filter(|gain| self.torque_is_external || gain * dt <= LARGEST_STEP).collect();
         let rate = self.false_alarms_per_hour / gains.len() as f64;
         let level = |gain: f64| {
             let gaussian = gaussian_level(nv, gain, dt, rate);

@@ -34,13 +34,15 @@ const ROUNDS: usize = 3;
 /// smallest result holds least of the motion.
 const ORDERS: std::ops::RangeInclusive<usize> = 2..=6;
 
-/// White noise per sample under a smooth motion.
-pub(super) fn white(value: impl Fn(usize) -> f64, count: usize) -> f64 {
-    ORDERS.map(|order| differences(&value, count, order)).fold(f64::INFINITY, f64::min)
+/// White noise per sample under a smooth motion, of rows at these times with a usual step (s).
+pub(super) fn white(value: impl Fn(usize) -> f64, time: &[f64], step: f64) -> f64 {
+    ORDERS.map(|order| differences(&value, time, step, order)).fold(f64::INFINITY, f64::min)
 }
 
-/// The root mean square of differences of one order, as a share of what they make of white noise.
-fn differences(value: &impl Fn(usize) -> f64, count: usize, order: usize) -> f64 {
+/// The root mean square of differences of one order, as a share of what they make of white noise. Those over a gap in time say
+/// nothing of it.
+fn differences(value: &impl Fn(usize) -> f64, time: &[f64], step: f64, order: usize) -> f64 {
+    let count = time.len();
     if count < 10 * order {
         return 0.0;
     }
@@ -52,7 +54,12 @@ fn differences(value: &impl Fn(usize) -> f64, count: usize, order: usize) -> f64
         // The sum of squared binomial coefficients, (2n)! / (n!)^2.
         growth *= 2.0 * (2 * n - 1) as f64 / n as f64;
     }
-    let mut squares: Vec<f64> = column.iter().map(|x| x * x).collect();
+    let longest = super::LONGEST_STEPS * step;
+    let whole = |k: &usize| time[k + order] - time[*k] <= longest;
+    let mut squares: Vec<f64> = (0..column.len()).filter(whole).map(|k| column[k] * column[k]).collect();
+    if squares.is_empty() {
+        return 0.0;
+    }
     squares.sort_by(f64::total_cmp);
     let kept = ((1.0 - TRIMMED) * squares.len() as f64).ceil() as usize;
     let mean = squares[..kept].iter().sum::<f64>() / kept as f64;
@@ -77,11 +84,11 @@ pub(super) fn estimate(
     step: f64,
 ) -> Result<NoiseModel> {
     let nv = robot.nv();
-    let torque: Vec<f64> = (0..nv).map(|j| white(|k| log.tau_of(k)[j], log.len())).collect();
+    let torque: Vec<f64> = (0..nv).map(|j| white(|k| log.tau_of(k)[j], log.time, step)).collect();
     let velocity = (0..nv).map(|j| {
         let speed = |k: usize| log.v_of(robot, k)[j];
         // Low-passed noise is not white: first differences hold nearly all of it, and all of the motion.
-        [white(speed, log.len()), MOST_VELOCITY * differences(&speed, log.len(), 1)]
+        [white(speed, log.time, step), MOST_VELOCITY * differences(&speed, log.time, step, 1)]
     });
     let spread = spread(robot, log, parts, skipped, step)?;
     Ok(split(&spread, torque, &velocity.collect::<Vec<_>>(), step))
@@ -249,7 +256,7 @@ impl Spread {
 }
 
 /// A joint that nothing is left of has errors of rounding (Nm).
-const SMALLEST: f64 = 1e-6;
+pub(super) const SMALLEST: f64 = 1e-6;
 
 #[cfg(test)]
 mod tests {
@@ -260,7 +267,12 @@ mod tests {
     fn white_noise_is_found_under_motion() {
         let noise = Stream::new(3);
         let signal = |k: usize| (k as f64 * 0.006).sin() * 20.0 + 0.05 * noise.normals(2 * k as u64)[0];
-        let found = white(signal, 20_000);
+        let time: Vec<f64> = (0..20_000).map(|k| 1e-3 * f64::from(k)).collect();
+        let found = white(signal, &time, 1e-3);
+        assert!((found - 0.05).abs() < 0.001, "{found}");
+        // Stretches of 40 rows, each at another place.
+        let stretches: Vec<f64> = (0..20_000).map(|k| 1e-3 * f64::from(k) + f64::from(k / 40)).collect();
+        let found = white(|k| signal(k) + 5.0 * noise.normals(2 * (k / 40) as u64)[1], &stretches, 1e-3);
         assert!((found - 0.05).abs() < 0.001, "{found}");
     }
 }

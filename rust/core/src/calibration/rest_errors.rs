@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::judged::Judged;
 use super::log::Log;
+use super::noise::SMALLEST;
 use crate::detection::{
     gaussian_level, ContactTest, FrictionErrors, Level, Tail, FOLLOW_TIME, GAINS, LARGEST_STEP, PEAK_TIME,
     SLOW,
@@ -58,7 +59,9 @@ pub(super) fn rest_errors(
     coulomb: &[f64],
     mut noise: NoiseModel,
 ) -> Result<(NoiseModel, Vec<Tail>)> {
-    let gains: Vec<f64> = GAINS.into_iter().filter(|gain| gain * step <= LARGEST_STEP).collect();
+    // Torques that are given need no observer: a low-pass follows them at any step.
+    let external = parts.iter().all(|part| part.robot.is_none());
+    let gains: Vec<f64> = GAINS.into_iter().filter(|gain| external || gain * step <= LARGEST_STEP).collect();
     let rms = |j: usize| {
         let squares = (0..log.len()).map(|row| log.tau_of(row)[j].powi(2)).sum::<f64>();
         (squares / log.len() as f64).sqrt()
@@ -76,9 +79,11 @@ pub(super) fn rest_errors(
     let spacing = SPACING.max(step);
     let event_gain = gains[1.min(gains.len() - 1)];
     for (j, white) in white.into_iter().enumerate() {
-        let (model, time) = slow_errors(&stretches, j, white, gains[0]).unwrap_or((0.0, TIMES[0]));
-        noise.model[j] = model.sqrt();
-        noise.model_time[j] = time;
+        // Where no stretch is long enough, what the estimate of the noise made of the slow errors stays.
+        if let Some((model, time)) = slow_errors(&stretches, j, white, gains[0]) {
+            noise.model[j] = model.sqrt().max(SMALLEST);
+            noise.model_time[j] = time;
+        }
     }
     noise.friction = (0..robot.nv())
         .map(|j| {
@@ -246,7 +251,7 @@ fn tails(
                 (since, window) = (0.0, 0.0);
             }
             test.advance(row.kinematics, row.velocity, row.unexplained, Step::Of(dt));
-            test.evaluate(&[], false);
+            test.evaluate(&[], false, None);
             test.follow(dt, row.starts || test.suspicious());
             since += dt;
             if since < SETTLED {

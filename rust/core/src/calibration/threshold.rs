@@ -2,11 +2,14 @@
 
 use super::Calibration;
 use crate::error::Result;
+use crate::math::chi_square::quantile;
 use crate::robot::Robot;
 use crate::torque::NoiseModel;
 
 /// Poses that are looked at: noise of velocities grows with the mass matrix, which changes with the pose.
 const POSES: u64 = 32;
+/// A threshold is this many standard deviations at least, whatever the rate.
+const FEWEST_DEVIATIONS: f64 = 2.0;
 const SECONDS: f64 = 3600.0;
 
 impl Calibration {
@@ -25,13 +28,18 @@ impl Calibration {
         let nv = corrected.nv();
         let rate = self.false_alarms_per_hour / (nv as f64 * SECONDS);
         let (mut deviation, mut threshold) = (vec![0.0_f64; nv], vec![0.0_f64; nv]);
+        let mut distinct = gain.to_vec();
+        distinct.sort_by(f64::total_cmp);
+        distinct.dedup();
         for pose in 0..POSES {
             let q = corrected.random_configuration(pose);
-            for (joint, gain) in gain.iter().enumerate() {
-                let variance = self.noise.covariance(corrected, &q, *gain, dt)?[(joint, joint)];
-                let time = self.noise.correlation_time(corrected, &q, *gain, dt)?[joint].max(dt);
-                deviation[joint] = deviation[joint].max(variance.sqrt());
-                threshold[joint] = threshold[joint].max(variance.sqrt() * quantile(rate * time));
+            for this in &distinct {
+                let (variance, time) = self.noise.variance_and_time(corrected, &q, *this, dt)?;
+                for joint in (0..nv).filter(|joint| gain[*joint] == *this) {
+                    let root = variance[joint].sqrt();
+                    deviation[joint] = deviation[joint].max(root);
+                    threshold[joint] = threshold[joint].max(root * deviations(rate * time[joint].max(dt)));
+                }
             }
         }
         let noise =
@@ -40,24 +48,10 @@ impl Calibration {
     }
 }
 
-/// So many standard deviations a Gaussian number exceeds, either way, with this probability; by its tail's expansion
-/// (Abramowitz and Stegun 26.2.12), to a part in a thousand below 1 %.
-fn quantile(probability: f64) -> f64 {
-    let tail = |z: f64| {
-        let w = 1.0 / (z * z);
-        (2.0 / std::f64::consts::PI).sqrt() * (-0.5 * z * z).exp() / z
-            * (1.0 - w * (1.0 - w * (3.0 - 15.0 * w)))
-    };
-    let (mut low, mut high) = (2.0, 40.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if tail(middle) > probability {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    0.5 * (low + high)
+/// So many standard deviations a Gaussian number exceeds, either way, with this probability; no fewer than
+/// [`FEWEST_DEVIATIONS`].
+fn deviations(probability: f64) -> f64 {
+    quantile(1, probability).sqrt().max(FEWEST_DEVIATIONS)
 }
 
 #[cfg(test)]
@@ -67,8 +61,9 @@ mod tests {
     #[test]
     fn quantiles_are_those_of_tables() {
         for (probability, table) in [(1e-2, 2.575_83), (1e-4, 3.890_59), (1e-6, 4.891_64), (1e-8, 5.730_73)] {
-            let z = quantile(probability);
-            assert!((z - table).abs() < 0.02, "{probability}: {z} instead of {table}");
+            let z = deviations(probability);
+            assert!((z - table).abs() < 1e-4, "{probability}: {z} instead of {table}");
         }
+        assert_eq!(deviations(0.5), FEWEST_DEVIATIONS);
     }
 }

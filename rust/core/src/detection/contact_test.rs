@@ -191,21 +191,13 @@ impl ContactTest {
     }
 
     /// Compares the torques without bias with their errors, with a lower level where a contact goes on; `torque` `(nv,)` is
-    /// the one to look at without a bank.
+    /// the one to look at without a bank. What is in free directions does not count.
     #[inline]
-    pub fn evaluate(&mut self, torque: &[f64], in_contact: bool) {
-        self.evaluate_beside(torque, in_contact, None);
-    }
-
-    /// The same where what is in free directions does not count.
-    #[inline]
-    pub fn evaluate_beside(
-        &mut self,
-        torque: &[f64],
-        in_contact: bool,
-        mut free: Option<&mut FreeDirections>,
-    ) {
+    pub fn evaluate(&mut self, torque: &[f64], in_contact: bool, mut free: Option<&mut FreeDirections>) {
         let share = if in_contact { SUSPICIOUS } else { 1.0 };
+        if in_contact && free.is_none() {
+            self.forget_what_fell();
+        }
         let Self { bank, signals, slow, without_bias, followed, joints, .. } = self;
         self.suspicious = false;
         joints.fill(0.0);
@@ -240,6 +232,27 @@ impl ContactTest {
             let threshold = f64::min(JOINT_LEVEL * widened, largest * ALMOST);
             for (joint, share) in joints.iter_mut().zip(shares) {
                 *joint = joint.max(share / threshold);
+            }
+        }
+    }
+
+    /// A slow observer still holds a torque that a faster one shows to have fallen: it takes over that one's. Otherwise the
+    /// contacts of people who push twice a second would be one.
+    #[inline]
+    fn forget_what_fell(&mut self) {
+        let Self { bank: Some(bank), signals, slow, without_bias, .. } = self else { return };
+        for slower in (0..signals.len().saturating_sub(1)).rev() {
+            let Signal { whitening, level, .. } = &mut signals[slower + 1];
+            let mut is_over = |which: usize| {
+                let torque = bank.torques()[which].iter().zip(slow.bias());
+                without_bias
+                    .iter_mut()
+                    .zip(torque)
+                    .for_each(|(value, (torque, bias))| *value = torque - bias);
+                whitening.squared_norm(without_bias) > SUSPICIOUS * *level
+            };
+            if is_over(slower) && !is_over(slower + 1) {
+                bank.take_over(slower, slower + 1);
             }
         }
     }
@@ -290,7 +303,7 @@ impl ContactTest {
         &self.followed
     }
 
-    /// The gains of the bank (1/s); none without one.
+    /// The gains of the bank, slow to fast (1/s); none without one.
     pub fn gains(&self) -> &[f64] {
         self.bank.as_ref().map_or(&[], ObserverBank::gains)
     }
@@ -300,11 +313,6 @@ impl ContactTest {
         if let Some(signal) = self.signals.first_mut() {
             free.leave(0, &mut signal.whitening, torque);
         }
-    }
-
-    /// The slowest gain of the bank (1/s); none without one.
-    pub fn slowest_gain(&self) -> Option<f64> {
-        self.bank.as_ref().map(ObserverBank::slowest_gain)
     }
 
     /// Whether one is so large that slow errors are not followed.

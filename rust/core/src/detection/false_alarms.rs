@@ -1,11 +1,7 @@
 //! Which value of the statistic untouched motion exceeds at a chosen rate (algorithm D3).
 
-use crate::math::chi_square::survival;
-
-/// Rounds of bisection; each halves the interval.
-const ROUNDS: usize = 60;
-/// No Gaussian error is so many squared standard deviations large.
-const LARGEST: f64 = 1e3;
+use crate::math::bisection::last_where;
+use crate::math::chi_square::{survival, LARGEST};
 
 /// How often contact-free motion, on blocks of a log that were not fitted, made a statistic large: beyond `level` 0.8 times a
 /// second, and more rarely by a factor of e for each `scale` more.
@@ -63,17 +59,8 @@ const FEWEST_PEAKS: usize = 10;
 /// falls off linearly is its probability times `gain u` (Pickands 1969; Adler and Taylor 2007, chapter 14), and
 /// at most once a tick.
 pub(crate) fn gaussian_level(degrees: usize, gain: f64, dt: f64, per_hour: f64) -> f64 {
-    let (mut low, mut high) = (degrees as f64, LARGEST);
-    for _ in 0..ROUNDS {
-        let level = 0.5 * (low + high);
-        let rate = HOUR * survival(degrees, level) / (dt + 1.0 / (gain * level));
-        if rate > per_hour {
-            low = level;
-        } else {
-            high = level;
-        }
-    }
-    0.5 * (low + high)
+    let rate = |level: f64| HOUR * survival(degrees, level) / (dt + 1.0 / (gain * level));
+    last_where([degrees as f64, LARGEST], |level| rate(level) > per_hour)
 }
 
 #[cfg(test)]

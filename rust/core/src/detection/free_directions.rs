@@ -5,14 +5,12 @@ use nalgebra::Vector3;
 
 use super::whitening::Whitening;
 use crate::error::{Error, Result};
-use crate::math::chi_square::survival;
+use crate::math::chi_square::{quantile, survival};
 use crate::robot::jacobian::for_each_column;
 use crate::robot::{Kinematics, LinkIndex, Robot, WORLD};
 
 /// A direction that less than this share of it sets apart from the others is none of its own.
 const SMALLEST_SHARE: f64 = 1e-6;
-/// Rounds of bisection for a level; each halves the interval.
-const ROUNDS: usize = 50;
 
 /// Columns behind a low-pass.
 #[derive(Debug, Clone)]
@@ -209,18 +207,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 /// taken away.
 pub(crate) fn level_shares(degrees: usize, level: f64) -> Vec<f64> {
     let probability = survival(degrees, level);
-    let share = |taken: usize| {
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..ROUNDS {
-            let middle = 0.5 * (low + high);
-            if survival(degrees - taken, middle * level) > probability {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        high
-    };
+    let share = |taken: usize| (quantile(degrees - taken, probability) / level).min(1.0);
     // Of no degrees nothing is left to compare.
     (0..degrees).map(share).chain([1.0]).collect()
 }

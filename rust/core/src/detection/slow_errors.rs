@@ -20,6 +20,9 @@ pub(crate) struct SlowErrors {
     noise: SlowNoise,
     /// Share of the errors that a low-pass of the time constant follows.
     followed: Vec<f64>,
+    /// The bias of no errors: what was tared.
+    zero: Vec<f64>,
+    /// The bias stays this near to it.
     limit: Vec<f64>,
     bias: Vec<f64>,
     /// Followed so far (s).
@@ -45,6 +48,7 @@ impl SlowErrors {
         SlowErrors {
             followed: noise.model_time.iter().map(|time| time / (time + time_constant)).collect(),
             limit: spread.map(|(model, bias)| LARGEST_BIAS * (model + bias).sqrt()).collect(),
+            zero: vec![0.0; noise.model.len()],
             bias: vec![0.0; noise.model.len()],
             age: 0.0,
             lost: 0.0,
@@ -66,8 +70,9 @@ impl SlowErrors {
         self.age += dt;
         let time_constant = self.age.clamp(FIRST_TIME, self.time_constant);
         let share = (dt / time_constant).min(1.0);
-        for ((bias, torque), limit) in self.bias.iter_mut().zip(torque).zip(&self.limit) {
-            *bias = (*bias + share * (torque - *bias)).clamp(-limit, *limit);
+        let ranges = self.zero.iter().zip(&self.limit);
+        for ((bias, torque), (zero, limit)) in self.bias.iter_mut().zip(torque).zip(ranges) {
+            *bias = (*bias + share * (torque - *bias)).clamp(zero - limit, zero + limit);
         }
         let left = (1.0 - share).powi(2);
         self.unknown *= left;
@@ -84,7 +89,7 @@ impl SlowErrors {
         for (k, kept) in self.kept.iter_mut().enumerate() {
             let load = self.noise.relative[k] * (torque[k] - self.bias[k]);
             *kept = kept.max((load * load).min(self.largest_kept[k]));
-            self.bias[k] *= 1.0 - forgotten;
+            self.bias[k] += forgotten * (self.zero[k] - self.bias[k]);
         }
     }
 
@@ -115,7 +120,16 @@ impl SlowErrors {
     /// Whether a torque may be the bias after a contact that may have left so much in each joint (Nm).
     pub fn allows(&self, torque: &[f64], left: impl Fn(usize) -> f64) -> bool {
         let limits = self.limit.iter().enumerate().map(|(k, limit)| limit + left(k));
-        torque.iter().zip(limits).all(|(torque, limit)| torque.abs() <= limit)
+        let from_zero = torque.iter().zip(&self.zero).map(|(torque, zero)| torque - zero);
+        from_zero.zip(limits).all(|(torque, limit)| torque.abs() <= limit)
+    }
+
+    /// Takes the torque of an untouched robot for the bias, which is then known, and which it falls back to.
+    pub fn tare(&mut self, torque: &[f64]) {
+        self.zero.copy_from_slice(torque);
+        self.bias.copy_from_slice(torque);
+        self.kept.fill(0.0);
+        (self.age, self.lost, self.unknown) = (self.time_constant, 0.0, 0.0);
     }
 
     /// The bias `(nv,)`.
@@ -125,6 +139,7 @@ impl SlowErrors {
 
     /// Forgets the bias.
     pub fn reset(&mut self) {
+        self.zero.fill(0.0);
         self.bias.fill(0.0);
         self.kept.fill(0.0);
         (self.age, self.lost, self.unknown) = (0.0, 0.0, 1.0);

@@ -1,10 +1,14 @@
 //! The chi-square distribution, as far as tests of a misfit need it.
 
+use super::bisection::last_where;
+
 /// Quantile of the standard normal distribution that belongs to [`upper_limit`]: 99 %.
 const NORMAL_QUANTILE: f64 = 2.326;
 /// Relative error at which a series ends.
 const ENOUGH: f64 = 1e-12;
 const MOST_TERMS: usize = 500;
+/// No Gaussian error is so many squared standard deviations large.
+pub(crate) const LARGEST: f64 = 1600.0;
 
 /// The value that a chi-square of `checks` degrees of freedom stays below in 99 % of cases, by the cube-root
 /// approximation of Wilson and Hilferty (1931), within 2 % for one degree and better for more.
@@ -59,6 +63,11 @@ pub(crate) fn survival(degrees: usize, value: f64) -> f64 {
     factor * fraction
 }
 
+/// The value that a chi-square of `degrees` degrees of freedom exceeds with a probability, up to [`LARGEST`].
+pub(crate) fn quantile(degrees: usize, probability: f64) -> f64 {
+    last_where([0.0, LARGEST], |value| survival(degrees, value) > probability)
+}
+
 /// The logarithm of `Gamma(n / 2)`.
 fn ln_gamma_of_half(n: usize) -> f64 {
     let (mut a, start) =
@@ -97,7 +106,9 @@ mod tests {
             (32, 90.0, 2.032_156_085_687_423_8e-7),
         ] {
             assert!((survival(degrees, value) / tail - 1.0).abs() < 1e-8, "{degrees} {value}");
+            assert!((quantile(degrees, tail) / value - 1.0).abs() < 1e-8, "{degrees} {value}");
         }
         assert_eq!(survival(3, 0.0), 1.0);
+        assert!((quantile(3, 0.0) / LARGEST - 1.0).abs() < 0.1 && quantile(3, 1.0) < 1e-9);
     }
 }

@@ -1,5 +1,6 @@
-//! Mathematics without robots: least squares, limits of chi-square, streams of random numbers.
+//! Mathematics without robots: bisection, least squares, chi-square, streams of random numbers.
 
+pub(crate) mod bisection;
 pub(crate) mod chi_square;
 pub(crate) mod least_squares;
 pub(crate) mod random;

@@ -103,6 +103,12 @@ impl BiasTracker {
         self.bias.copy_from_slice(bias);
     }
 
+    /// Takes the torque of an untouched robot for the bias; no first estimate is needed then.
+    pub fn tare(&mut self, torque: &[f64]) {
+        self.set(torque);
+        self.finished = BLOCKS;
+    }
+
     /// The bias `(nv,)`.
     pub fn bias(&self) -> &[f64] {
         &self.bias

@@ -9,13 +9,14 @@ use super::options::MonitorOptions;
 use super::report::ContactReport;
 use super::sensing::Sensing;
 use super::source::{signal_of, Source};
+use super::tare::RestReadings;
 use crate::detection::{ContactTest, Detector, FreeDirections, Load, ReleaseDetector, Whitening};
 use crate::error::{Error, Result};
 use crate::isolation::ContactIsolator;
 use crate::observer::{MomentumObserver, Step};
 use crate::robot::Robot;
 use crate::sample::Sample;
-use crate::sensor::{SensorIndex, SensorTree};
+use crate::sensor::{ForceTorqueSensor, SensorIndex, SensorTree};
 use crate::tracking::{ContactTracker, TickEvidence};
 
 /// The sense of touch of one robot, called once a control tick.
@@ -54,6 +55,9 @@ pub struct ContactMonitor {
     pub(super) source: Option<Source>,
     pub(super) observer: MomentumObserver,
     pub(super) bias: Option<BiasTracker>,
+    /// What was tared where no bias is followed.
+    pub(super) fixed_bias: Option<Vec<f64>>,
+    pub(super) rest: RestReadings,
     /// Of all joints at once, with a bias of its own; none where each joint has a threshold.
     pub(super) test: Option<ContactTest>,
     /// Of each joint (Nm, N).
@@ -126,6 +130,8 @@ impl ContactMonitor {
             release,
             sensing: (!options.isolation.sensors.is_empty()).then_some(sensing),
             bias: options.bias_time_constant.filter(|_| test.is_none()).map(bias_tracker).transpose()?,
+            fixed_bias: None,
+            rest: RestReadings::new(nv, sensors),
             free: FreeDirections::new(
                 &robot,
                 &options.wanted_points,
@@ -207,10 +213,17 @@ impl ContactMonitor {
         let inward = self.limits.inward();
         self.free.set_pose(&self.robot, self.observer.kinematics(), inward, length, new);
         let felt = self.detector.sense(self.sensing.as_ref().map_or(&[], Sensing::unwanted));
+        let mut detected = true;
         if self.test.is_some() {
             self.test_all_joints(step, new, felt);
-        } else if self.remove_bias(length, new, felt) {
-            self.detector.update(&self.report.collision_torque, length);
+        } else {
+            detected = self.remove_bias(length, new, felt);
+            if detected {
+                self.detector.update(&self.report.collision_torque, length);
+            }
+        }
+        if new {
+            self.note_rest(length, detected);
         }
         if self.detector.collision() {
             self.isolate();
@@ -310,7 +323,7 @@ impl ContactMonitor {
         }
     }
 
-    /// Forgets all ticks, the bias and the source of the torques too; the robot keeps its payload.
+    /// Forgets all ticks, the bias and the source of the torques too; the robot keeps its payload and the sensors their offsets.
     pub fn reset(&mut self) {
         self.forget_source();
         self.observer.reset();
@@ -326,6 +339,8 @@ impl ContactMonitor {
         self.clock.reset();
         self.report.remainder_learned = false;
         self.release.reset();
+        self.rest.reset();
+        self.fixed_bias = None;
         if let Some(bias) = &mut self.bias {
             bias.reset();
         }
@@ -346,10 +361,15 @@ impl ContactMonitor {
         self.clock.dt()
     }
 
-    /// The bias that is subtracted `(nv,)`; none without tracking.
+    /// The bias that is subtracted `(nv,)`; none without tracking, unless [`ContactMonitor::tare`] found one.
     pub fn bias(&self) -> Option<&[f64]> {
         let of_test = self.test.as_ref().map(|test| test.slow().bias());
-        of_test.or_else(|| self.bias.as_ref().map(BiasTracker::bias))
+        of_test.or_else(|| self.bias.as_ref().map(BiasTracker::bias)).or(self.fixed_bias.as_deref())
+    }
+
+    /// The sensors, with the offsets that are subtracted now.
+    pub fn sensors(&self) -> &[ForceTorqueSensor] {
+        self.sensing.as_ref().map_or(&[], |sensing| sensing.tree().sensors())
     }
 
     /// The sensors' names.

@@ -16,7 +16,7 @@ impl ContactMonitor {
         *remainder_learned = false;
         leave_out(sensing, collision_torque, Some(test.slow().bias()));
         test.advance(observer.kinematics(), observer.velocity(), observer.unexplained(), step);
-        test.evaluate_beside(collision_torque, detector.collision(), free.if_any());
+        test.evaluate(collision_torque, detector.collision(), free.if_any());
         let touched = detector.collision() || felt || test.suspicious();
         if touched && !new {
             release.interrupt();
@@ -26,7 +26,7 @@ impl ContactMonitor {
                 test.slow_mut().set(release.remainder());
                 release.reset();
                 detector.reset();
-                test.evaluate_beside(collision_torque, false, free.if_any());
+                test.evaluate(collision_torque, false, free.if_any());
                 *remainder_learned = true;
             }
         } else {
@@ -47,10 +47,16 @@ impl ContactMonitor {
     /// is false where the step brought no new torque: the first, and one over a gap; `felt`: a sensor is over its threshold.
     /// False during the bias's first estimate.
     pub(super) fn remove_bias(&mut self, length: f64, new: bool, felt: bool) -> bool {
-        let Self { bias, sensing, detector, release, report, free, scale, .. } = self;
+        let Self { bias, fixed_bias, sensing, detector, release, report, free, scale, .. } = self;
         let ContactReport { collision_torque, external_torque, remainder_learned, .. } = report;
         *remainder_learned = false;
         let Some(bias) = bias else {
+            for torque in
+                [&mut *collision_torque, external_torque].into_iter().filter(|_| fixed_bias.is_some())
+            {
+                let bias = fixed_bias.iter().flatten();
+                torque.iter_mut().zip(bias).for_each(|(torque, bias)| *torque -= bias);
+            }
             leave_out(sensing, collision_torque, None);
             if free.any() {
                 free.leave(0, scale, collision_torque);

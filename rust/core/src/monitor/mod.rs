@@ -12,6 +12,7 @@ mod report;
 mod sensing;
 mod settings;
 mod source;
+mod tare;
 
 pub use contact_monitor::ContactMonitor;
 pub use options::MonitorOptions;

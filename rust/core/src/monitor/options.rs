@@ -163,10 +163,10 @@ impl MonitorOptions {
         test: &Option<ContactTest>,
         threshold: &[f64],
     ) -> Result<Vec<f64>> {
-        match (&self.calibration, test.as_ref().and_then(ContactTest::slowest_gain)) {
+        match (&self.calibration, test.as_ref().and_then(|test| test.gains().first())) {
             (Some(calibration), Some(gain)) => {
                 let (_, threshold) =
-                    calibration.noise_and_threshold(corrected, &vec![gain; corrected.nv()], self.dt)?;
+                    calibration.noise_and_threshold(corrected, &vec![*gain; corrected.nv()], self.dt)?;
                 Ok(threshold)
             }
             _ => Ok(threshold.to_vec()),

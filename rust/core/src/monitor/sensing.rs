@@ -141,6 +141,19 @@ impl Sensing {
         &self.blind
     }
 
+    /// A sensor's external wrench as it adds to the sensor's reading: its own axes and convention; none where it is left out.
+    pub fn external_reading(&self, kinematics: &Kinematics, sensor: usize) -> Option<Vector6<f64>> {
+        let wrench = self.wrenches.external()[sensor].as_ref()?;
+        Some(self.tree.reading(kinematics, sensor, wrench))
+    }
+
+    /// Adds to the offset of a sensor what its external wrench showed; that is zero from now on.
+    pub fn add_offset(&mut self, sensor: usize, reading: &Vector6<f64>) {
+        let offset = Vector6::from(self.tree.sensors()[sensor].offset) + reading;
+        self.tree.set_offset(sensor, offset.into());
+        self.wrenches.clear(sensor);
+    }
+
     /// Whether contacts behind a sensor are wanted.
     pub fn has_wanted(&self) -> bool {
         self.wanted.contains(&true)

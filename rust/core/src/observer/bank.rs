@@ -47,14 +47,16 @@ impl ObserverBank {
         &self.torques
     }
 
+    /// The torque of one gain becomes that of another.
+    pub fn take_over(&mut self, which: usize, of: usize) {
+        if let Ok([torque, other]) = self.torques.get_disjoint_mut([which, of]) {
+            torque.copy_from_slice(other);
+        }
+    }
+
     /// All gains (1/s).
     pub fn gains(&self) -> &[f64] {
         &self.gains
-    }
-
-    /// The first gain (1/s).
-    pub fn slowest_gain(&self) -> f64 {
-        self.gains[0]
     }
 
     /// Forgets all steps.

@@ -56,7 +56,7 @@ pub(crate) struct WrenchObserver {
     before_gap: Vec<f64>,
     torque: Vec<f64>,
     usable: Vec<bool>,
-    /// The robot changed since the last tick.
+    /// The robot or an offset changed since the last tick.
     changed: bool,
 }
 
@@ -155,6 +155,14 @@ impl WrenchObserver {
     pub fn set_robot(&mut self, robot: &Arc<Robot>, tree: &SensorTree) {
         self.robot = Arc::clone(robot);
         self.parts = distal_parts(robot, tree);
+        self.changed = true;
+    }
+
+    /// A sensor's external wrench is zero from now on, where it is not left out; the next step is as one over a gap.
+    pub fn clear(&mut self, sensor: usize) {
+        self.external[sensor] = self.external[sensor].map(|_| Spatial::zeros());
+        self.lagged[sensor].fill(0.0);
+        self.unobserved[sensor].fill(0.0);
         self.changed = true;
     }
 

@@ -1,12 +1,12 @@
 //! Where sensors sit, and which links, joints and other sensors lie behind which of them.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector3, Vector6};
 
 use super::force_torque_sensor::ForceTorqueSensor;
 use crate::error::{Error, Result};
 use crate::robot::ancestry::Ancestry;
 use crate::robot::{Kinematics, Robot, LARGEST, WORLD};
-use crate::spatial::vector::split;
+use crate::spatial::vector::{split, stack};
 use crate::spatial::Pose;
 
 /// What a contact's source is called that no sensor saw.
@@ -262,6 +262,19 @@ impl SensorTree {
         let turn = self.rotation(kinematics, sensor);
         let (force, moment) = split(&self.sensors[sensor].exerted(reading));
         [turn * force, turn * moment]
+    }
+
+    /// What a wrench in world axes adds to a sensor's reading, in its axes and convention.
+    #[inline]
+    pub(crate) fn reading(
+        &self,
+        kinematics: &Kinematics,
+        sensor: usize,
+        wrench: &Vector6<f64>,
+    ) -> Vector6<f64> {
+        let turn = self.rotation(kinematics, sensor);
+        let (force, moment) = split(wrench);
+        stack(&turn.tr_mul(&force), &turn.tr_mul(&moment)) * self.sensors[sensor].convention.sign()
     }
 
     /// The sensors, in the order given, with their present offsets.

@@ -82,17 +82,24 @@ impl NoiseModel {
     /// # Errors
     /// [`Error::Input`] names the field or argument.
     pub fn correlation_time(&self, robot: &Robot, q: &[f64], gain: f64, dt: f64) -> Result<Vec<f64>> {
+        Ok(self.variance_and_time(robot, q, gain, dt)?.1)
+    }
+
+    /// The diagonal of the covariance (Nm squared) and the correlation times (s), both `(nv,)`.
+    pub(crate) fn variance_and_time(
+        &self,
+        robot: &Robot,
+        q: &[f64],
+        gain: f64,
+        dt: f64,
+    ) -> Result<(Vec<f64>, Vec<f64>)> {
         let parts = self.parts(robot, q, gain, dt)?;
-        let time = |k: usize| {
+        let of_joint = |k: usize| {
             let variance: f64 = parts.iter().map(|(part, _)| part[(k, k)]).sum();
             let sum: f64 = parts.iter().map(|(part, times)| part[(k, k)] * times[k]).sum();
-            if variance > 0.0 {
-                sum / variance
-            } else {
-                0.0
-            }
+            (variance, if variance > 0.0 { sum / variance } else { 0.0 })
         };
-        Ok((0..robot.nv()).map(time).collect())
+        Ok((0..robot.nv()).map(of_joint).unzip())
     }
 
     /// What torque, velocity and slow errors add to the covariance, and the correlation time of each part.
