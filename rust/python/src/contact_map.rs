@@ -175,7 +175,8 @@ pub struct PyMapEstimate {
 
 impl PyMapEstimate {
     pub fn with_base(content: Content) -> PyClassInitializer<Self> {
-        let MapEstimate { estimate, residual, effective_samples, log_evidence, explained, .. } = &content.found;
+        let MapEstimate { estimate, residual, effective_samples, log_evidence, explained, .. } =
+            &content.found;
         let event = if estimate.contact.is_some() { Event::Started } else { Event::None };
         let base = FilterEstimate {
             estimate: estimate.clone(),
@@ -230,5 +231,9 @@ impl PyMapEstimate {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, "MapEstimate", &self.content)
+    }
+
+    fn __repr__(slf: PyRef<'_, Self>) -> String {
+        slf.as_super().text("MapEstimate")
     }
 }
