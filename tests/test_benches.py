@@ -20,6 +20,7 @@ LEAST = {
     "compensation": 2,
     "monitor": 6,
     "noisy": 12,
+    "contact_map": 8,
     "closest": 2,
     "rays": 2,
     "particle_filter": 5,
@@ -50,6 +51,7 @@ def test_every_comparison_times_ours_beside_peers(report: dict, name: str) -> No
         "compensation": "compensation",
         "monitor": "monitor",
         "noisy": "noisy tick",
+        "contact_map": "contact map",
         "closest": "closest point",
         "rays": "all hits",
         "particle_filter": "particle filter",
@@ -94,4 +96,4 @@ def test_comparisons_without_the_peers_run(name: str) -> None:
 def test_unknown_comparison_is_refused() -> None:
     done = run("nothing")
     assert done.returncode == 2
-    assert "observer, compensation, monitor, noisy, closest, rays, particle_filter" in done.stderr
+    assert "observer, compensation, monitor, noisy, contact_map, closest, rays, particle_filter" in done.stderr

@@ -67,6 +67,10 @@ SIGNATURES = {
     "torque_threshold=0.2, noise=None, calibration=None",
     "ContactParticleFilter.update": "q, tau_ext, *, time=None",
     "ContactParticleFilter.reset": "",
+    "ContactMap": "robot, *, samples=5_000, friction=0.5, noise=None, links=None, pull_probability=0.05, "
+    "calibration=None",
+    "ContactMap.evaluate": "q, tau_ext",
+    "MapEstimate.to_dict": "",
     "Candidate.to_dict": "",
     "Contact.to_dict": "",
     "Isolation.to_dict": "",

@@ -9,7 +9,7 @@ import time
 
 from .machine import describe, use_one_core
 
-NAMES = ("observer", "compensation", "monitor", "noisy", "closest", "rays", "particle_filter")
+NAMES = ("observer", "compensation", "monitor", "noisy", "contact_map", "closest", "rays", "particle_filter")
 
 
 def main() -> int:
@@ -27,7 +27,7 @@ def main() -> int:
     # Not before: libraries read the number of threads when they are loaded.
     import contactsense as cs
 
-    from . import closest, compensation, monitor, noisy, observer, particle_filter, rays, table
+    from . import closest, compensation, contact_map, monitor, noisy, observer, particle_filter, rays, table
     from .timing import Pace
 
     if cs.build_profile != "release":
@@ -35,7 +35,7 @@ def main() -> int:
         return 2
     clock = time.perf_counter if arguments.wall else time.process_time
     pace = Pace(3, 0.002, 2, 2, clock) if arguments.quick else Pace(60, 0.005, 20, 40, clock)
-    all_modules = (observer, compensation, monitor, noisy, closest, rays, particle_filter)
+    all_modules = (observer, compensation, monitor, noisy, contact_map, closest, rays, particle_filter)
     modules = dict(zip(NAMES, all_modules, strict=True))
     comparisons = []
     for name in arguments.only or NAMES:

@@ -70,8 +70,13 @@ def _peer_row(comparison: Comparison, timing: Timing) -> tuple[str, ...]:
 
 def _times(comparison: Comparison, timing: Timing) -> tuple[str, ...]:
     """Median, spread and tail; samples that are means of many calls have no tail worth printing."""
-    tail = ("", "") if comparison.max_worst_us is None else tuple(_us(value) for value in timing.tail)
+    tail = ("", "") if not has_tail(comparison) else tuple(_us(value) for value in timing.tail)
     return (_us(timing.median), _span(timing.spread), *tail)
+
+
+def has_tail(comparison: Comparison) -> bool:
+    """Whether its samples are of single calls."""
+    return comparison.has_tail or comparison.max_worst_us is not None
 
 
 def _us(value: float) -> str:
@@ -93,7 +98,7 @@ def _comparison_json(comparison: Comparison) -> dict[str, Any]:
             "name": timing.name,
             "median_us": timing.median,
             "spread_us": timing.spread,
-            "tail_us": timing.tail if comparison.max_worst_us is not None else None,
+            "tail_us": timing.tail if has_tail(comparison) else None,
             "ratio": comparison.ratio(timing),
             "ratio_spread": comparison.ratio_spread(timing),
         }

@@ -69,6 +69,7 @@ class Comparison:
     max_us: float | None = None  # of ours
     min_ratio: float | None = None  # of the second to ours
     max_worst_us: float | None = None  # of our slowest call, where `samples` are of single calls
+    has_tail: bool = False  # whether `samples` are of single calls where nothing is asked of the slowest
 
     def ratio(self, timing: Timing) -> float:
         """Of the medians: how many times as long as ours it takes."""

@@ -17,6 +17,7 @@ __all__ = [
     "Contact",
     "ContactEstimate",
     "ContactIsolator",
+    "ContactMap",
     "ContactMonitor",
     "ContactParticleFilter",
     "ContactReport",
@@ -28,6 +29,7 @@ __all__ = [
     "Isolation",
     "JointFriction",
     "LoadCompensator",
+    "MapEstimate",
     "Mode",
     "ModelError",
     "MomentumObserver",
@@ -2006,7 +2008,7 @@ class Particles:
     def weight(self) -> NDArray[np.float64]:
         """Weights, `(n,)`, which sum to one."""
 
-@final
+@disjoint_base
 class ContactEstimate:
     """The contact as a filter sees it.
 
@@ -2140,6 +2142,101 @@ class Mode:
     @property
     def spread(self) -> float:
         """Root of the mean squared distance of the mode's particles from their mean [m]."""
+
+@final
+class ContactMap:
+    """Says where on a robot a contact is, and how certain that is: the posterior over samples of all surface.
+
+    Every sample of the surface is a contact of unknown force: along the inward normal with a logarithm that is uniform from 2
+    to 300 N, across it by friction. Where the posterior is narrower than the samples are apart, they are divided on the true
+    surface. One contact; one thread at a time may use it.
+
+    Args:
+        robot: The robot.
+        samples: Samples of the surface, over all links: in proportion to the root of a link's area, so that small ones have
+            enough.
+        friction: Coefficient of friction; the force across the normal has half of it, times the normal force, as its standard
+            deviation in each direction.
+        noise: A `NoiseModel`; None for the default one.
+        links: Names of the links to look on; None for all that move and have a surface.
+        pull_probability: Probability that a contact pulls on the surface.
+        calibration: A `Calibration` of this robot, whose noise takes the place of `noise`.
+
+    Raises:
+        InputError: Names the argument.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> contact_map = cs.ContactMap(cs.Robot.named("iiwa14"), samples=1000)
+        >>> estimate = contact_map.evaluate(np.full(7, 0.4), [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])
+        >>> estimate.log_evidence > 0.0
+        True
+    """
+
+    def __new__(
+        cls,
+        robot: Robot,
+        *,
+        samples: int = 5000,
+        friction: float = 0.5,
+        noise: NoiseModel | None = None,
+        links: Iterable[str] | None = None,
+        pull_probability: float = 0.05,
+        calibration: Calibration | None = None,
+    ) -> Self: ...
+    @property
+    def robot(self) -> Robot:
+        """The robot."""
+    def evaluate(self, q: ArrayLike, tau_ext: ArrayLike) -> MapEstimate:
+        """The posterior of one contact from an external torque.
+
+        Args:
+            q: Configuration, `(nq,)`.
+            tau_ext: External torque, `(nv,)` [Nm; N for sliding joints and a base's linear part]: what `MomentumObserver`
+                gives, or `g(q) - tau` where the robot holds still.
+
+        Returns:
+            The posterior.
+
+        Raises:
+            InputError: Names the argument.
+        """
+
+@final
+class MapEstimate(ContactEstimate):
+    """The posterior of one contact as a map sees it: a `ContactEstimate` with what it says of every sample.
+
+    Frozen; can be pickled and copied. `modes` are clusters of the posterior, `stiffness` is None, `effective_samples` the
+    effective number of pieces of surface that the posterior is spread over; `residual` is what the best contact leaves over,
+    and `explained` says whether the noise explains that (a chi-square test at 99 %).
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> contact_map = cs.ContactMap(cs.Robot.named("iiwa14"), samples=1000)
+        >>> estimate = contact_map.evaluate(np.full(7, 0.4), [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])
+        >>> estimate.points.shape == (len(estimate.log_posterior), 3)
+        True
+    """
+
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, strings, lists in place of arrays and tuples, and dicts in place of modes.
+        """
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """The samples' points, `(n, 3)`, world frame [m]; read-only."""
+    @property
+    def log_posterior(self) -> NDArray[np.float64]:
+        """Logarithm of each sample's share of the posterior, `(n,)`; the shares sum to one; read-only."""
+    @property
+    def log_evidence(self) -> float:
+        """Logarithm of how many times as likely the torque is with a contact as without."""
+    @property
+    def region_radius(self) -> float:
+        """Radius of the ball about `point` that holds 90 % of the posterior [m]; NaN without contact."""
 
 def _calibrate(
     robot: Robot,

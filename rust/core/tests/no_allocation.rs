@@ -7,6 +7,7 @@ use std::sync::Mutex;
 
 use contactsense::calibration::Calibration;
 use contactsense::isolation::{ContactIsolator, IsolatorOptions};
+use contactsense::map::{ContactMap, MapOptions};
 use contactsense::monitor::{ContactMonitor, MonitorOptions};
 use contactsense::observer::MomentumObserver;
 use contactsense::particle::{ContactParticleFilter, FilterOptions};
@@ -247,6 +248,28 @@ fn a_tick_allocates_nothing() {
         assert_eq!(allocations(work), 0, "monitor of {} with sensors", robot.name());
         let report = monitor.report();
         assert_eq!((report.sensors_left_out.len(), report.wrenches.len()), (1, readings.len()));
+    }
+}
+
+#[test]
+fn an_evaluation_of_a_map_allocates_nothing() {
+    let _alone = ALONE.lock().expect("the other tests have not failed");
+    for robot in [common::arm(), common::humanoid()] {
+        let q = common::configuration(&robot, 0.4);
+        let torques = touches(&robot, &q);
+        let still = vec![0.0; robot.nv()];
+        let noisy = (0..20).map(|k| common::noisy(&torques[k % torques.len()], 0.1, k as f64));
+        let causeless = [0.1, 30.0, 1e6].into_iter().map(|size| common::noisy(&still, size, size));
+        let inputs: Vec<_> = noisy.chain(causeless).chain([still.clone(), torques[0].clone()]).collect();
+        let mut map = ContactMap::new(robot.clone(), &MapOptions::default()).expect("valid options");
+        let mut contacts = 0;
+        let work = || {
+            for torque in &inputs {
+                contacts += usize::from(map.evaluate(&q, torque).expect("valid input").log_evidence > 0.0);
+            }
+        };
+        assert_eq!(allocations(work), 0, "map of {}", robot.name());
+        assert!(contacts > 0, "no torque was taken for a contact");
     }
 }
 

@@ -232,4 +232,8 @@ impl PyMapEstimate {
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         reduced(py, "MapEstimate", &self.content)
     }
+
+    fn __repr__(slf: PyRef<'_, Self>) -> String {
+        slf.as_super().text("MapEstimate")
+    }
 }

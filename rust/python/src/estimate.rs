@@ -303,14 +303,21 @@ impl PyContactEstimate {
     }
 
     fn __repr__(&self) -> String {
+        self.text("ContactEstimate")
+    }
+}
+
+impl PyContactEstimate {
+    /// What a class of this name says of itself.
+    pub fn text(&self, class: &str) -> String {
         let Some(mode) = self.contact_mode() else {
-            return format!("ContactEstimate(no contact, event='{}')", self.event());
+            return format!("{class}(no contact, event='{}')", self.event());
         };
         let (p, force) = (&mode.point, mode.force.norm());
         let ambiguous = if self.found.estimate.ambiguous { ", ambiguous" } else { "" };
         let link = self.link();
         format!(
-            "ContactEstimate('{link}', point=[{:.4}, {:.4}, {:.4}], magnitude={force:.2} N{ambiguous})",
+            "{class}('{link}', point=[{:.4}, {:.4}, {:.4}], magnitude={force:.2} N{ambiguous})",
             p.x, p.y, p.z
         )
     }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use contactsense::isolation::{ContactIsolator, IsolatorOptions};
 use contactsense::load::{UrdfGeometry, UrdfOptions};
+use contactsense::map::{ContactMap, MapEstimate, MapOptions};
 use contactsense::monitor::{ContactMonitor, ContactReport, MonitorOptions};
 use contactsense::particle::{FilterOptions, ForceModel};
 use contactsense::robot::{Robot, RobotDescription};
@@ -49,6 +50,12 @@ fn options_are_as_they_were_written() {
     let read: FilterOptions = serde_json::from_str(text).expect("the rest has defaults");
     let force_model = ForceModel::FrictionCone(0.5);
     assert_eq!(read, FilterOptions { particles: 500, force_model, ..FilterOptions::default() });
+    let read: MapOptions =
+        serde_json::from_str(r#"{"samples": 500, "links": ["link_7"]}"#).expect("the rest has defaults");
+    let links = Some(vec!["link_7".into()]);
+    assert_eq!(read, MapOptions { samples: 500, links, ..MapOptions::default() });
+    let wrong = serde_json::from_str::<MapOptions>(r#"{"sample": 500}"#);
+    assert!(wrong.expect_err("a slip").to_string().contains("sample"));
     // The defaults of thresholds are another matter in a monitor, so that none may be left out.
     let partial = serde_json::from_str::<IsolatorOptions>(r#"{"max_contacts": 2}"#);
     assert!(partial.expect_err("no thresholds").to_string().contains("torque_threshold"));
@@ -86,4 +93,17 @@ fn contacts_are_the_same() {
         assert!(!isolation.contacts.is_empty());
         assert_eq!(&there_and_back(isolation), isolation);
     }
+}
+
+#[test]
+fn a_posterior_is_the_same() {
+    let robot = Arc::new(Robot::example_arm());
+    let mut map =
+        ContactMap::new(robot, &MapOptions { samples: 500, ..MapOptions::default() }).expect("valid options");
+    let found = map.evaluate(&[0.4; 7], &[1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0]).expect("valid input");
+    let read: MapEstimate = there_and_back(found);
+    assert_eq!(
+        serde_json::to_string(&read).expect("plain data"),
+        serde_json::to_string(found).expect("plain data")
+    );
 }
