@@ -12,7 +12,7 @@ use crate::map::{MapOptions, Measurement, Summary, SurfacePosterior};
 use crate::posterior::{Mode, MOST_MODES};
 use crate::robot::{LinkIndex, Robot};
 use crate::spatial::vector::stack;
-use crate::torque::{BestForce, ForceModel, TorqueNoise};
+use crate::torque::{best_cone_force, directions, BestForce, ForceModel, TorqueNoise};
 
 /// Time between two measurements of a contact that are kept (s), and the same as a share of the contact's age: so they are
 /// spread over all of it.
@@ -38,7 +38,7 @@ pub(crate) struct ContactTracker {
     posterior: SurfacePosterior,
     summary: Summary,
     noise: TorqueNoise,
-    friction: ForceModel,
+    friction: f64,
     locate_within: f64,
     deviation: Vec<f64>,
     identities: Identities,
@@ -75,7 +75,7 @@ impl ContactTracker {
             place: None,
             modes: Vec::with_capacity(MOST_MODES),
             now: Measurement::new(&robot, wanted),
-            friction: ForceModel::FrictionCone(options.friction),
+            friction: options.friction,
             since: None,
             measured: 0.0,
             strength: 0.0,
@@ -172,8 +172,15 @@ impl ContactTracker {
         let (frame, target) = (&self.now.frames().links[link], self.now.target().on(link));
         // One that pulls pushes from within.
         let outward = if place.force.dot(&place.normal) > 0.0 { -place.normal } else { place.normal };
-        let best = BestForce::of(frame, target, self.friction, &place.point, &outward);
-        (best.normal > DETERMINED * best.variance.sqrt()).then_some(best.force)
+        let best =
+            BestForce::of(frame, target, ForceModel::FrictionCone(self.friction), &place.point, &outward);
+        if best.normal <= DETERMINED * best.variance.sqrt() {
+            return None;
+        }
+        let directions = directions(&outward);
+        let (gram, products) = frame.responses(&place.point, &directions, target);
+        let parts = best_cone_force(&gram, &products, self.friction).force;
+        Some(directions[0] * parts.x + directions[1] * parts.y + directions[2] * parts.z)
     }
 
     fn answer(&mut self, evidence: &TickEvidence<'_>, isolation: &mut Isolation) {
@@ -186,7 +193,7 @@ impl ContactTracker {
         }
         // A torque that has grown since tells more than the posterior yet knows.
         let outdated = self.strength > GROWN * self.concluded;
-        if outdated && isolation.contacts.iter().any(|contact| contact.located) {
+        if outdated && !isolation.contacts.is_empty() {
             return;
         }
         let explained = found.explained;
