@@ -75,7 +75,7 @@ def test_regions_and_link_probabilities_are_calibrated_on_contacts_from_the_prio
 
 @pytest.mark.parametrize("link", ["iiwa_link_3", "iiwa_link_5", "iiwa_link_7"])
 def test_the_posterior_of_samples_is_that_of_an_integral_over_the_force(link: str) -> None:
-    """With noise so large that the patches' size hardly matters, what is left is the error of Laplace's method."""
+    """With noise so large that patches hardly matter, only the error of Laplace's method is left."""
     rng = np.random.default_rng(1)
     model = packaged_model()
     noise = cs.NoiseModel(torque=2.0, model=0.0, relative=0.0)
