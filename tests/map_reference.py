@@ -1,7 +1,8 @@
 """The posterior of one contact, computed with Pinocchio's Jacobians and by integration over the force.
 
-The prior that a map states: a point uniform by area over the exposed surface, a normal force whose logarithm is
-uniform, a force across the normal that is Gaussian with half the friction cone's radius as its standard deviation.
+The prior that a map states: a point uniform by area over the exposed surface, a normal force whose logarithm
+is uniform, a force across the normal that is Gaussian with half the friction cone's radius as its standard
+deviation.
 """
 
 from __future__ import annotations
@@ -63,8 +64,8 @@ def log_likelihoods(
 ) -> FloatArray:
     """Of a contact at each point relative to none, `(n,)`.
 
-    `jacobian` `(n, 3, nv)`, `inward` normals `(n, 3)`. The normal force is integrated over; the force across it
-    adds to the torque's covariance.
+    `jacobian` `(n, 3, nv)`, `inward` normals `(n, 3)`. The normal force is integrated over; the force
+    across it adds to the torque's covariance.
     """
     result = np.empty(len(jacobian))
     for k, (rows, normal) in enumerate(zip(jacobian, inward, strict=True)):
@@ -90,7 +91,7 @@ def log_likelihoods(
 
 
 def integral(log_density: Callable[[FloatArray], FloatArray]) -> float:
-    """Log of the mean of a density over the log of the force, on a grid that is dense about its greatest value."""
+    """Log of a density's mean over the log of the force, on a grid that is dense about its greatest value."""
     low, high = np.log(FORCES)
     logs = np.linspace(low, high, GRID)
     for _ in range(4):
@@ -116,9 +117,9 @@ def patches(robot: cs.Robot, q: FloatArray, link: str, points: FloatArray, drawn
     sample = robot.surface(link).sample(drawn, seed=0)
     pose = robot.link_pose(q, link)
     surface = sample.points @ pose[:3, :3].T + pose[:3, 3]
-    apart = np.linalg.norm(surface[:, None] - points[None], axis=2)
+    apart = (surface**2).sum(axis=1)[:, None] + (points**2).sum(axis=1) - 2.0 * surface @ points.T
     itself = apart.argmin(axis=0)
-    assert apart[itself, np.arange(len(points))].max() < 1e-9
+    np.testing.assert_allclose(surface[itself], points, rtol=0.0, atol=1e-9)
     counts = np.bincount(apart.argmin(axis=1), minlength=len(points))
     return Patch(points, sample.normals[itself] @ pose[:3, :3].T, np.log(counts))
 

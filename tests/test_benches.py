@@ -96,4 +96,5 @@ def test_comparisons_without_the_peers_run(name: str) -> None:
 def test_unknown_comparison_is_refused() -> None:
     done = run("nothing")
     assert done.returncode == 2
-    assert "observer, compensation, monitor, noisy, contact_map, closest, rays, particle_filter" in done.stderr
+    names = "observer, compensation, monitor, noisy, contact_map, closest, rays, particle_filter"
+    assert names in done.stderr

@@ -10,7 +10,7 @@ import contactsense as cs
 
 CLASSES = [getattr(cs, name) for name in cs.__all__ if inspect.isclass(getattr(cs, name))]
 IDS = [cls.__name__ for cls in CLASSES]
-# Arrays without a unit: directions and numbers of rows.
+# Arrays without a unit: directions, numbers of rows and logarithms of probabilities.
 UNITLESS = {
     "hysteresis_std",
     "normal",
@@ -19,6 +19,7 @@ UNITLESS = {
     "triangle",
     "ray",
     "link",
+    "log_posterior",
     "weight",
     "directions",
     "relative",

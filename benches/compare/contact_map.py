@@ -1,4 +1,4 @@
-"""`ContactMap.evaluate` beside the same posterior with Pinocchio and NumPy, on noisy torques of single pushes."""
+"""`ContactMap.evaluate` beside the same posterior with Pinocchio and NumPy, on noisy torques."""
 
 from __future__ import annotations
 
@@ -27,8 +27,9 @@ EACH = 10  # pushes for one scene of the other comparisons
 REPEATS = 3
 MIN_RATIO = 30.0
 MAX_US = {"iiwa14": 500.0, "panda": 500.0, "atlas": 800.0, "talos": 800.0}
-# Both find the link, or give it this much of the posterior.
-LIKELY, AGREE = 0.05, 0.9
+# In so many of so many pushes the true link has this much of the posterior. The peer does not divide its
+# samples, which are too far apart for the narrow posteriors of a humanoid.
+CHECKED, LIKELY, OURS_RIGHT, PEER_RIGHT = 100, 0.05, 0.9, 0.75
 
 
 def compare(pace: Pace) -> list[Comparison]:
@@ -39,10 +40,10 @@ def compare(pace: Pace) -> list[Comparison]:
         noise = cs.NoiseModel(torque=DEVIATION, model=0.0, relative=0.0)
         ours = cs.ContactMap(robot, samples=SAMPLES, noise=noise)
         peer = ReferenceMap(robot, model, samples=SAMPLES, deviation=DEVIATION)
+        checked = [_push(robot, model, seed) for seed in range(CHECKED)]
+        assert _right(ours, checked) >= OURS_RIGHT
+        assert _right(peer, checked) >= PEER_RIGHT
         cases = [_push(robot, model, seed) for seed in range(EACH * pace.scenes)]
-        for each in (ours, peer):
-            found = [each.evaluate(q, torque).link_probabilities[link] for q, torque, link in cases]
-            assert np.mean(np.array(found) > LIKELY) >= AGREE
         contestants = [
             ("contactsense", partial(_calls, ours, cases)),
             ("pinocchio, numpy", partial(_calls, peer, cases)),
@@ -66,6 +67,12 @@ def _robot(name: str) -> tuple[cs.Robot, Any]:
 
 def _calls(contact_map: Any, cases: list[Case]) -> list[Callable[[], object]]:
     return [partial(contact_map.evaluate, q, torque) for q, torque, _ in cases]
+
+
+def _right(contact_map: Any, cases: list[Case]) -> float:
+    """In which share of the cases the true link is likely."""
+    likely = [contact_map.evaluate(q, torque).link_probabilities[link] > LIKELY for q, torque, link in cases]
+    return float(np.mean(likely))
 
 
 def _push(robot: cs.Robot, model: Any, seed: int) -> Case:

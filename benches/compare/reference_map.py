@@ -1,8 +1,8 @@
-"""The posterior of one contact over the surface with Pinocchio and NumPy: what `ContactMap.evaluate` is measured by.
+"""The posterior of one contact over the surface with Pinocchio and NumPy, beside `ContactMap.evaluate`.
 
-All samples of all links at once: the torques of a unit force along each direction at each sample, their Gram
-matrices, and the force integrated out as `ContactMap` does. It keeps to its samples: nothing is divided where the
-posterior is narrower than they are apart.
+All samples of all links at once: the torques of a unit force along each direction at each sample, their
+Gram matrices, and the force integrated out as `ContactMap` does. It keeps to its samples: nothing is divided
+where the posterior is narrower than they are apart.
 """
 
 from __future__ import annotations
