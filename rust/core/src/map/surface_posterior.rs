@@ -190,9 +190,8 @@ impl SurfacePosterior {
         let share = 1.0 / self.count as f64;
         for measurement in &self.measurements[..self.count] {
             let found = measurement.likelihood(&self.prior, link, block);
-            for k in 0..LANES {
-                logs[0][k] += share * found.log_push[k];
-                logs[1][k] += share * found.log_pull[k];
+            for (sum, found) in logs.iter_mut().zip([found.log_push, found.log_pull]) {
+                sum.iter_mut().zip(found).for_each(|(sum, log)| *sum += share * log);
             }
         }
         logs
@@ -223,26 +222,23 @@ impl SurfacePosterior {
         self.next_level()
     }
 
-    /// The samples that have a share of the posterior are its first pieces.
+    /// The samples that have a share of the posterior are its first pieces, and the best one of each link and side: a sample is
+    /// coarse, and which link it is may only show on smaller pieces.
     fn take_samples(&mut self) {
         self.leaves.clear();
         let greatest = self.log_push.iter().chain(&self.log_pull).copied().fold(f64::NEG_INFINITY, f64::max);
-        let floor = greatest + KEPT.ln();
         let without = self.without_contact();
         let mut entry = 0;
         for samples in &self.samples.links {
-            for (k, (place, &area)) in samples.places.iter().zip(&samples.areas).enumerate() {
-                for (log, pulls) in [(self.log_push[entry + k], false), (self.log_pull[entry + k], true)] {
-                    if log > floor {
-                        let log_weight = log + without + area.ln();
-                        self.leaves.push(Leaf {
-                            link: samples.link,
-                            place: *place,
-                            area,
-                            pulls,
-                            log_weight,
-                            force: 0.0,
-                        });
+            let count = samples.places.len();
+            for (logs, pulls) in [(&self.log_push, false), (&self.log_pull, true)] {
+                let own = &logs[entry..entry + count];
+                let floor = own.iter().copied().fold(f64::NEG_INFINITY, f64::max).min(greatest + KEPT.ln());
+                for (k, (place, &area)) in samples.places.iter().zip(&samples.areas).enumerate() {
+                    if own[k] >= floor {
+                        let log_weight = own[k] + without + area.ln();
+                        let place = *place;
+                        self.leaves.push(Leaf { link: samples.link, place, area, pulls, log_weight, force: 0.0 });
                     }
                 }
             }

@@ -37,7 +37,7 @@ impl Identities {
             let found = self
                 .known
                 .iter()
-                .position(|known| (alone || known.link == contact.link) && (known.last < time || alone));
+                .position(|known| alone || known.link == contact.link && known.last < time);
             let known = match found {
                 Some(found) => &mut self.known[found],
                 None if self.known.len() == MOST => continue,
