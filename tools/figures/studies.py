@@ -13,11 +13,12 @@ from .markdown import percent, table
 SOURCES = {
     "measured": "the observer, from measured torques",
     "vendor": "the manufacturer's estimate",
+    "calibrated": "the manufacturer's estimate, calibrated",
 }
 
 
 def franka_touch(raw: Raw) -> dict[str, Any]:
-    """Both sources of the external torque: the logs held out, and all."""
+    """All sources of the external torque: the logs held out, and all."""
     (study,) = raw[""]
     return {
         source: {part: study[source][part] for part in ("settings", "held_out", "overall")}

@@ -20,6 +20,9 @@ const STEP: usize = 96;
 /// Pieces that are divided at a level at most, and how many levels there are: work is bounded.
 const MOST_DIVIDED: usize = 64;
 const MOST_LEVELS: usize = 12;
+/// The best piece of another link or side is divided too where its weight's logarithm is less than this below the best: that
+/// of its middle may be far below that of its best point.
+const RIVAL: f64 = 30.0;
 /// Pieces with less than this share of the weightiest one's are not divided, and those with less than this are left out.
 const DIVIDED: f64 = 0.02;
 const KEPT: f64 = 1e-4;
@@ -65,6 +68,8 @@ pub(crate) struct SurfacePosterior {
     log_weights: Vec<f64>,
     pub(super) weights: Vec<f64>,
     order: Vec<u32>,
+    /// By link and side: its best piece.
+    sides: Vec<Option<usize>>,
     pub(super) clusters: Clusters,
     stage: Stage,
     level: usize,
@@ -81,7 +86,7 @@ impl SurfacePosterior {
     pub fn new(robot: Arc<Robot>, options: &MapOptions, wanted: &[usize]) -> Result<Self> {
         let samples = SurfaceSamples::new(&robot, wanted, options.samples)?;
         let padded: usize = samples.links.iter().map(|link| link.blocks.len() * LANES).sum();
-        let most = 2 * samples.count + MOST_LEVELS * MOST_DIVIDED * LANES;
+        let most = 2 * samples.count + MOST_LEVELS * 2 * MOST_DIVIDED * LANES;
         Ok(SurfacePosterior {
             prior: options.prior(),
             measurements: vec![Measurement::new(&robot, wanted.to_vec()); MOST_MEASUREMENTS],
@@ -92,6 +97,7 @@ impl SurfacePosterior {
             log_weights: Vec::with_capacity(most),
             weights: Vec::with_capacity(most),
             order: Vec::with_capacity(most),
+            sides: vec![None; 2 * robot.links().len()],
             clusters: Clusters::new(most, robot.links().len())?,
             stage: Stage::Done,
             level: 0,
@@ -238,7 +244,14 @@ impl SurfacePosterior {
                     if own[k] >= floor {
                         let log_weight = own[k] + without + area.ln();
                         let place = *place;
-                        self.leaves.push(Leaf { link: samples.link, place, area, pulls, log_weight, force: 0.0 });
+                        self.leaves.push(Leaf {
+                            link: samples.link,
+                            place,
+                            area,
+                            pulls,
+                            log_weight,
+                            force: 0.0,
+                        });
                     }
                 }
             }
@@ -260,16 +273,32 @@ impl SurfacePosterior {
         self.level += 1;
         self.edge *= 0.5;
         self.blur(PATCH * self.edge * force);
-        let floor = DIVIDED * self.weights[best];
-        self.order.clear();
-        self.order.extend((0..self.leaves.len() as u32).filter(|k| self.weights[*k as usize] > floor));
-        if self.order.len() > MOST_DIVIDED {
-            let weight = |k: &u32| self.weights[*k as usize];
-            self.order
-                .select_nth_unstable_by(MOST_DIVIDED, |a, b| weight(b).total_cmp(&weight(a)).then(a.cmp(b)));
-            self.order.truncate(MOST_DIVIDED);
-        }
+        self.choose(best);
         Stage::Pieces { next: 0 }
+    }
+
+    /// The pieces to divide: the weightiest, and the best one of each link and side that smaller pieces may still favour.
+    fn choose(&mut self, best: usize) {
+        let Self { leaves, weights, order, sides, .. } = self;
+        let floor = DIVIDED * weights[best];
+        order.clear();
+        order.extend((0..leaves.len() as u32).filter(|k| weights[*k as usize] > floor));
+        if order.len() > MOST_DIVIDED {
+            let weight = |k: &u32| weights[*k as usize];
+            order.select_nth_unstable_by(MOST_DIVIDED, |a, b| weight(b).total_cmp(&weight(a)).then(a.cmp(b)));
+            order.truncate(MOST_DIVIDED);
+        }
+        sides.fill(None);
+        for (k, leaf) in leaves.iter().enumerate() {
+            let side = &mut sides[2 * leaf.link + usize::from(leaf.pulls)];
+            if side.is_none_or(|other: usize| leaves[other].log_weight < leaf.log_weight) {
+                *side = Some(k);
+            }
+        }
+        let least = leaves[best].log_weight - RIVAL;
+        let rivals =
+            sides.iter().flatten().filter(|k| weights[**k] <= floor && leaves[**k].log_weight > least);
+        order.extend(rivals.take(MOST_DIVIDED).map(|k| *k as u32));
     }
 
     fn weigh_leaves(&mut self) {

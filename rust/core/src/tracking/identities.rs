@@ -34,10 +34,8 @@ impl Identities {
         let alone = contacts.len() == 1 && self.known.len() == 1;
         for contact in contacts {
             let force = contact.force().map_or(0.0, |force| force.norm());
-            let found = self
-                .known
-                .iter()
-                .position(|known| alone || known.link == contact.link && known.last < time);
+            let found =
+                self.known.iter().position(|known| alone || known.link == contact.link && known.last < time);
             let known = match found {
                 Some(found) => &mut self.known[found],
                 None if self.known.len() == MOST => continue,
