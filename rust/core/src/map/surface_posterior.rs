@@ -319,7 +319,11 @@ impl SurfacePosterior {
                 return Stage::Pieces { next };
             }
             (next, work) = (next + 1, work + self.count + PROJECTION);
-            let leaf = self.leaves[index as usize];
+            let mut leaf = self.leaves[index as usize];
+            if self.sides[2 * leaf.link + usize::from(leaf.pulls)] == Some(index as usize) {
+                leaf.place = self.uphill(&leaf);
+                work += PROJECTION;
+            }
             let Some(surface) = self.robot.links()[leaf.link].surface.as_ref() else { continue };
             let places = leaf.quarters().map(|middle| {
                 let near = surface.closest_point_near(&middle, leaf.place.triangle);
@@ -340,6 +344,32 @@ impl SurfacePosterior {
             }
         }
         self.next_level()
+    }
+
+    /// The place of a piece, moved on the surface to where the torques are likelier by up to its own size: pieces do not cover
+    /// the surface exactly, and the best point may lie between them.
+    fn uphill(&self, leaf: &Leaf) -> SurfacePoint {
+        let Some(surface) = self.robot.links()[leaf.link].surface.as_ref() else { return leaf.place };
+        let side = usize::from(leaf.pulls);
+        let (mut place, step) = (leaf.place, 0.5 * leaf.area.sqrt());
+        for _ in 0..UPHILL {
+            let here = PlaceBlock::new(&[(place.point, place.normal); LANES]);
+            let own = self.log_likelihood(leaf.link, &here)[side][0];
+            let beside = crate::spatial::basis::across(&place.normal);
+            let other = place.normal.cross(&beside);
+            let around = [beside, -beside, other, -other].map(|aside| {
+                let near = surface.closest_point_near(&(place.point + aside * step), place.triangle);
+                SurfacePoint { point: near.point, normal: near.normal, triangle: near.triangle }
+            });
+            let block = PlaceBlock::new(&around.map(|place| (place.point, place.normal)));
+            let logs = self.log_likelihood(leaf.link, &block)[side];
+            let best = (0..LANES).fold(0, |best, k| if logs[k] > logs[best] { k } else { best });
+            if logs[best] <= own || surface.hides(&around[best].point, around[best].triangle) {
+                break;
+            }
+            place = around[best];
+        }
+        place
     }
 
     /// Weights and noise are final; the forces are not known yet.
@@ -380,5 +410,7 @@ impl SurfacePosterior {
     }
 }
 
+/// Moves of a piece before it is divided.
+const UPHILL: usize = 2;
 /// What it takes to find the four parts of a piece on the surface, in likelihoods of blocks.
 const PROJECTION: usize = 4;
