@@ -79,6 +79,7 @@ def _best_cone_forces(
     """Forces `(n, 3)`, objectives `(n,)` and parts of the cone; a problem a row, of Gram matrices by rows, `(n, 9)`, products
     `(n, 3)` and friction coefficients `(n,)`.
     """
+
 def _restore(kind: str, version: str, content: Any) -> Any:
     """Restores what `pickle` or `copy` has taken apart."""
 
@@ -2206,7 +2207,8 @@ class ContactMap:
 class MapEstimate(ContactEstimate):
     """The posterior of one contact as a map sees it: a `ContactEstimate` with what it says of every sample.
 
-    Frozen; can be pickled and copied. `modes` are clusters of the posterior, `stiffness` is None, `effective_samples` the
+    Frozen; can be pickled and copied. It assumes that there is a contact, so `contact` is True; `log_evidence` says whether
+    there is one. `modes` are clusters of the posterior, `stiffness` is None, `effective_samples` the
     effective number of pieces of surface that the posterior is spread over; `residual` is what the best contact leaves over,
     and `explained` says whether the noise explains that (a chi-square test at 99 %).
 

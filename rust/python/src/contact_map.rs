@@ -156,7 +156,8 @@ pub struct Content {
 
 /// The posterior of one contact as a map sees it: a `ContactEstimate` with what it says of every sample.
 ///
-/// Frozen; can be pickled and copied. `modes` are clusters of the posterior, `stiffness` is None, `effective_samples` the
+/// Frozen; can be pickled and copied. It assumes that there is a contact, so `contact` is True; `log_evidence` says whether
+/// there is one. `modes` are clusters of the posterior, `stiffness` is None, `effective_samples` the
 /// effective number of pieces of surface that the posterior is spread over; `residual` is what the best contact leaves over,
 /// and `explained` says whether the noise explains that (a chi-square test at 99 %).
 ///

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contactsense import Contact
 from contactsense.sim import ImperfectRun, RecordedContact
 
 from .chain import Chain
@@ -45,21 +44,13 @@ def judge_estimate(
     truth = contact.contact
     pose = run.truth.robot.link_pose(run.truth.q[latest.row], truth.link)
     point = pose[:3, :3] @ truth.point_local + pose[:3, 3]
-    probabilities, region = _posterior(told)
     return JudgedEstimate(
         link=told.link,
         steps=chain.steps(truth.link, told.link),
         error=float(np.linalg.norm(told.point - point)),
         located=told.located,
-        link_probabilities=probabilities,
-        region_radius=region,
+        link_probabilities=told.link_probabilities,
+        region_radius=told.region_radius,
         age=float(run.truth.time[latest.row] - run.truth.time[latest.onset]),
         contacts=len(latest.contacts),
     )
-
-
-def _posterior(contact: Contact) -> tuple[dict[str, float], float]:
-    """Probability of each link, and radius of the 90 % region [m], where contacts have them."""
-    probabilities = getattr(contact, "link_probabilities", None)
-    region = getattr(contact, "region_radius", None)
-    return dict(probabilities or {}), np.nan if region is None else float(region)

@@ -83,8 +83,7 @@ impl ContactMap {
         self.posterior.forget();
         self.posterior.measure(&self.kinematics, tau_ext, &self.deviation);
         while !self.posterior.step() {}
-        self.summary.read(&self.posterior);
-        Ok(self.summary.withdraw_unlikely())
+        Ok(self.summary.read(&self.posterior))
     }
 
     /// What the last evaluation said.

@@ -42,16 +42,6 @@ impl Summary {
         &self.found
     }
 
-    /// Where the torques are likelier without contact there is none; modes and links' probabilities then are those of a contact
-    /// all the same.
-    pub fn withdraw_unlikely(&mut self) -> &MapEstimate {
-        if self.found.log_evidence <= 0.0 {
-            (self.found.estimate.contact, self.found.estimate.covariance) = (None, None);
-            self.found.region_radius = None;
-        }
-        &self.found
-    }
-
     /// Reads a posterior that is complete.
     pub fn read(&mut self, posterior: &SurfacePosterior) -> &MapEstimate {
         let measurement = posterior.newest();

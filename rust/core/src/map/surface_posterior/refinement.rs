@@ -1,0 +1,102 @@
+//! Smaller pieces of surface where the posterior is narrower than samples are apart.
+
+use super::{Leaf, Stage, SurfacePosterior, DIVIDED, MOST_DIVIDED, STEP};
+use crate::spatial::basis::across;
+use crate::surface::SurfacePoint;
+use crate::torque::{PlaceBlock, LANES};
+
+/// The best piece of another link or side is divided too where its weight's logarithm is less than this below the best: that
+/// of its middle may be far below that of its best point.
+const RIVAL: f64 = 30.0;
+/// Moves of a piece before it is divided.
+const UPHILL: usize = 2;
+/// What it takes to find the four parts of a piece on the surface, in likelihoods of blocks.
+const PROJECTION: usize = 4;
+
+impl SurfacePosterior {
+    /// The pieces to divide: the weightiest, and the best one of each link and side that smaller pieces may still favour.
+    pub(super) fn choose(&mut self, best: usize) {
+        let Self { leaves, weights, order, sides, .. } = self;
+        let floor = DIVIDED * weights[best];
+        order.clear();
+        order.extend((0..leaves.len() as u32).filter(|k| weights[*k as usize] > floor));
+        if order.len() > MOST_DIVIDED {
+            let weight = |k: &u32| weights[*k as usize];
+            order.select_nth_unstable_by(MOST_DIVIDED, |a, b| weight(b).total_cmp(&weight(a)).then(a.cmp(b)));
+            order.truncate(MOST_DIVIDED);
+        }
+        sides.fill(None);
+        for (k, leaf) in leaves.iter().enumerate() {
+            let side = &mut sides[2 * leaf.link + usize::from(leaf.pulls)];
+            if side.is_none_or(|other: usize| leaves[other].log_weight < leaf.log_weight) {
+                *side = Some(k);
+            }
+        }
+        let least = leaves[best].log_weight - RIVAL;
+        let rivals =
+            sides.iter().flatten().filter(|k| weights[**k] <= floor && leaves[**k].log_weight > least);
+        order.extend(rivals.take(MOST_DIVIDED).map(|k| *k as u32));
+    }
+
+    /// Divides pieces into four each, on the true surface.
+    pub(super) fn divide(&mut self, mut next: usize) -> Stage {
+        let without = self.without_contact();
+        let mut work = 0;
+        while let Some(&index) = self.order.get(next) {
+            if work >= STEP {
+                return Stage::Pieces { next };
+            }
+            (next, work) = (next + 1, work + self.count + PROJECTION);
+            let mut leaf = self.leaves[index as usize];
+            if self.sides[2 * leaf.link + usize::from(leaf.pulls)] == Some(index as usize) {
+                leaf.place = self.uphill(&leaf);
+                work += PROJECTION;
+            }
+            let Some(surface) = self.robot.links()[leaf.link].surface.as_ref() else { continue };
+            let places = leaf.quarters().map(|middle| {
+                let near = surface.closest_point_near(&middle, leaf.place.triangle);
+                SurfacePoint { point: near.point, normal: near.normal, triangle: near.triangle }
+            });
+            let block = PlaceBlock::new(&places.map(|place| (place.point, place.normal)));
+            let logs = self.log_likelihood(leaf.link, &block)[usize::from(leaf.pulls)];
+            let area = 0.25 * leaf.area;
+            for (k, (place, log)) in places.into_iter().zip(logs).enumerate() {
+                let hidden = surface.hides(&place.point, place.triangle);
+                let log_weight = if hidden { f64::NEG_INFINITY } else { log + without + area.ln() };
+                let part = Leaf { place, area, log_weight, ..leaf };
+                if k == 0 {
+                    self.leaves[index as usize] = part;
+                } else {
+                    self.leaves.push(part);
+                }
+            }
+        }
+        self.next_level()
+    }
+
+    /// The place of a piece, moved on the surface to where the torques are likelier by up to its own size: pieces do not cover
+    /// the surface exactly, and the best point may lie between them.
+    fn uphill(&self, leaf: &Leaf) -> SurfacePoint {
+        let Some(surface) = self.robot.links()[leaf.link].surface.as_ref() else { return leaf.place };
+        let side = usize::from(leaf.pulls);
+        let (mut place, step) = (leaf.place, 0.5 * leaf.area.sqrt());
+        for _ in 0..UPHILL {
+            let here = PlaceBlock::new(&[(place.point, place.normal); LANES]);
+            let own = self.log_likelihood(leaf.link, &here)[side][0];
+            let beside = across(&place.normal);
+            let other = place.normal.cross(&beside);
+            let around = [beside, -beside, other, -other].map(|aside| {
+                let near = surface.closest_point_near(&(place.point + aside * step), place.triangle);
+                SurfacePoint { point: near.point, normal: near.normal, triangle: near.triangle }
+            });
+            let block = PlaceBlock::new(&around.map(|place| (place.point, place.normal)));
+            let logs = self.log_likelihood(leaf.link, &block)[side];
+            let best = (0..LANES).fold(0, |best, k| if logs[k] > logs[best] { k } else { best });
+            if logs[best] <= own || surface.hides(&around[best].point, around[best].triangle) {
+                break;
+            }
+            place = around[best];
+        }
+        place
+    }
+}
