@@ -89,7 +89,8 @@ def test_points_are_judged_in_the_pose_of_their_tick() -> None:
     }
 
     def judged(**more: Any) -> JudgedEstimate:
-        latest = Latest(rows.start + 100, rows.stop - 1, (SimpleNamespace(**told, **more),))  # type: ignore[arg-type]
+        contact = SimpleNamespace(**{"link_probabilities": {}, "region_radius": np.nan, **told, **more})
+        latest = Latest(rows.start + 100, rows.stop - 1, (contact,))  # type: ignore[arg-type]
         return judge_estimate(run, Chain(IIWA), run.truth.contacts[0], latest)
 
     plain = judged()

@@ -1469,7 +1469,7 @@ class Contact:
         """Probability that the contact is on `link`; NaN where no posterior was worked out.
 
         A monitor works out the posterior of a single contact over all surface (`ContactMap`) where `samples` is not zero and
-        there are no sensors and no wanted points. It takes some ticks from the onset on.
+        there are no sensors, no wanted points and no floating base. It takes some ticks from the onset on.
         """
     @property
     def link_probabilities(self) -> dict[str, float]:
@@ -1568,7 +1568,7 @@ class ContactMonitor:
         locate_within: A contact is located if 90 % of the places that explain the torques are within this distance of
             its point [m].
         samples: Samples of the surface from which the posterior of a single contact is worked out, as `ContactMap` does,
-            spread over ticks; 0 for closed forms only. Not with sensors or wanted points.
+            spread over ticks; 0 for closed forms only. Not with sensors, wanted points or a floating base.
 
     Raises:
         InputError: Names the argument.

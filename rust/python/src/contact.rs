@@ -236,7 +236,7 @@ impl PyContact {
     /// Probability that the contact is on `link`; NaN where no posterior was worked out.
     ///
     /// A monitor works out the posterior of a single contact over all surface (`ContactMap`) where `samples` is not zero and
-    /// there are no sensors and no wanted points. It takes some ticks from the onset on.
+    /// there are no sensors, no wanted points and no floating base. It takes some ticks from the onset on.
     #[getter]
     fn probability(&self) -> f64 {
         self.contact.posterior.as_ref().map_or(f64::NAN, |posterior| posterior.probability)

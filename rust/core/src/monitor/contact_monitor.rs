@@ -71,7 +71,7 @@ pub struct ContactMonitor {
     pub(super) release: ReleaseDetector,
     pub(super) detector: Detector,
     pub(super) isolator: ContactIsolator,
-    /// None where `samples` is zero, and with sensors or wanted points.
+    /// None where `samples` is zero, with sensors or wanted points, and on a floating base.
     pub(super) tracker: Option<ContactTracker>,
     pub(super) sensing: Option<Sensing>,
     pub(super) options: MonitorOptions,

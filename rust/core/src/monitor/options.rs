@@ -61,7 +61,7 @@ pub struct MonitorOptions {
     /// Per velocity variable, or one for all.
     pub hysteresis: Vec<f64>,
     /// Samples of the surface by which the place of a contact is found where closed forms do not determine it; zero for closed
-    /// forms only.
+    /// forms only. Of arms without sensors and wanted points.
     #[cfg_attr(feature = "serde", serde(default = "samples"))]
     pub samples: usize,
 }
@@ -129,13 +129,14 @@ impl MonitorOptions {
         }))
     }
 
-    /// What finds places of contacts by samples of the surface. Torques that sensors or wanted points share are left to closed forms.
+    /// What finds places of contacts by samples of the surface. Torques that sensors or wanted points share are left to closed forms, and so
+    /// are those of a floating base, which are far more exact than samples are close.
     ///
     /// # Errors
     /// [`Error::Input`] names the option.
     pub(super) fn tracker(&self, robot: &Arc<Robot>) -> Result<Option<ContactTracker>> {
         let shared = !self.isolation.sensors.is_empty() || !self.wanted_points.is_empty();
-        if self.samples == 0 || shared || !robot.has_contact_links() {
+        if self.samples == 0 || shared || robot.floating_base() || !robot.has_contact_links() {
             return Ok(None);
         }
         let (_, noise) = self.isolation.threshold_and_noise(robot)?;

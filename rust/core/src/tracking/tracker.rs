@@ -24,6 +24,11 @@ const STRONG: f64 = 0.6;
 const GROWN: f64 = 1.3;
 /// A torque that is left out counts with so many times its standard deviation.
 const LEFT_OUT: f64 = 1e6;
+/// Redundant torques agree with one force but for this share only where torques have no noise: then a closed form is exact.
+const EXACT: f64 = 1e-6;
+/// A closed form that explains the torques better by so much, in squared standard deviations, shows a place that the samples
+/// have missed: 99.9 % of a chi-square of the five unknowns of a force on a line of action.
+const LOST: f64 = 20.5;
 /// A normal force is determined if it exceeds so many standard deviations.
 const DETERMINED: f64 = 2.0;
 /// A closed form gives a contact's point if that is not farther from the posterior's than its region's radius, or this (m).
@@ -41,6 +46,7 @@ pub(crate) struct ContactTracker {
     friction: f64,
     locate_within: f64,
     deviation: Vec<f64>,
+    left: Vec<f64>,
     identities: Identities,
     /// Where the contact can be by the last posterior that was worked out: points, forces and normals in the links' frames.
     place: Option<Mode>,
@@ -71,6 +77,7 @@ impl ContactTracker {
             noise,
             locate_within,
             deviation: vec![1.0; robot.nv()],
+            left: vec![0.0; robot.nv()],
             identities: Identities::new(),
             place: None,
             modes: Vec::with_capacity(MOST_MODES),
@@ -130,12 +137,8 @@ impl ContactTracker {
         }
         self.strongest = if first { strength } else { self.strongest.max(strength) };
         self.measured = evidence.time;
-        let errors = &mut self.deviation;
-        let largest = crate::torque::largest(evidence.torque);
-        for (k, deviation) in errors.iter_mut().enumerate() {
-            *deviation = deviation.hypot(self.noise.growing(k, 1.0, evidence.torque[k], largest));
-        }
-        self.posterior.measure(evidence.kinematics, evidence.torque, errors);
+        self.add_growing(evidence.torque);
+        self.posterior.measure(evidence.kinematics, evidence.torque, &self.deviation);
     }
 
     /// Standard deviations without contact.
@@ -183,6 +186,30 @@ impl ContactTracker {
         Some(directions[0] * parts.x + directions[1] * parts.y + directions[2] * parts.z)
     }
 
+    /// Squared norm of what a force at a point of a link leaves over of a tick's torque, in standard deviations (in the link's
+    /// frame).
+    fn misfit(
+        &mut self,
+        evidence: &TickEvidence<'_>,
+        link: LinkIndex,
+        point: &Vector3<f64>,
+        force: &Vector3<f64>,
+    ) -> f64 {
+        self.weigh(evidence);
+        self.add_growing(evidence.newest);
+        let Self { now, robot, deviation, left, .. } = self;
+        now.set_on(link.get(), robot, evidence.kinematics, evidence.newest, deviation);
+        now.left_over(link.get(), point, force, left)
+    }
+
+    /// Adds the errors that grow with the contact's torque to the standard deviations.
+    fn add_growing(&mut self, torque: &[f64]) {
+        let largest = crate::torque::largest(torque);
+        for (k, deviation) in self.deviation.iter_mut().enumerate() {
+            *deviation = deviation.hypot(self.noise.growing(k, 1.0, torque[k], largest));
+        }
+    }
+
     fn answer(&mut self, evidence: &TickEvidence<'_>, isolation: &mut Isolation) {
         let Some(place) = self.place else { return };
         let found = self.summary.estimate();
@@ -201,12 +228,30 @@ impl ContactTracker {
         let point = pose.transform_point(&place.point);
         let region_radius = found.region_radius.unwrap_or(f64::INFINITY);
         let covariance = found.estimate.covariance.unwrap_or_default();
-        let closed_form = isolation.contacts.first().filter(|contact| {
+        let closed_form = isolation.contacts.first().filter(|contact| !several && contact.located).cloned();
+        let agrees = |contact: &Contact| {
             let near = |other: ContactPlace| (other.point - point).norm() <= region_radius.max(AGREES);
-            !several && contact.located && contact.link == place.link && contact.place.is_some_and(near)
-        });
-        let mut contact = closed_form.cloned().unwrap_or_else(|| {
-            let force = self.force(evidence, &place).map(|force| pose.rotation * force);
+            contact.link == place.link && contact.place.is_some_and(near)
+        };
+        let force = self.force(evidence, &place);
+        let contradicted = closed_form.as_ref().filter(|contact| !agrees(contact));
+        if let Some(other) = contradicted {
+            let size = evidence.newest.iter().map(|torque| torque * torque).sum::<f64>().sqrt();
+            if other.verified && isolation.residual < EXACT * size {
+                return;
+            }
+            let own = self.misfit(evidence, place.link, &place.point, &force.unwrap_or_default());
+            let pose = evidence.kinematics.link_pose(&self.robot, other.link);
+            let at = other.place.map_or(Vector3::zeros(), |place| place.point_local);
+            let push = pose.inverse_transform_vector(&other.force().unwrap_or_default());
+            if own > LOST + self.misfit(evidence, other.link, &at, &push) {
+                return;
+            }
+        }
+        // Two answers that both explain the torques: neither is sure.
+        let sure = contradicted.is_none() && region_radius <= self.locate_within;
+        let mut contact = closed_form.filter(agrees).unwrap_or_else(|| {
+            let force = force.map(|force| pose.rotation * force);
             Contact {
                 place: Some(ContactPlace {
                     point,
@@ -219,7 +264,7 @@ impl ContactTracker {
                 ..Contact::unlocated(place.link)
             }
         });
-        contact.located = region_radius <= self.locate_within;
+        contact.located = sure;
         isolation.modes.clear();
         isolation.modes.extend(self.modes.iter().map(|mode| {
             let pose = evidence.kinematics.link_pose(&self.robot, mode.link);
