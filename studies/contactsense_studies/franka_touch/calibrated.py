@@ -60,6 +60,7 @@ def replay_calibrated(robot: Robot, log: TouchLog, calibration: Calibration) -> 
         np.array([report.collision for report in reports]),
         np.array([report.onset for report in reports]),
         np.array([report.external_torque for report in reports]),
+        tuple(next(iter(report.contacts), None) for report in reports),
     )
     return told, replace(CALIBRATED, noise=tuple(monitor.torque_threshold))
 

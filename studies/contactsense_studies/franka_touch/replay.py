@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from contactsense import ContactMonitor, MomentumObserver, Robot
+from contactsense import Contact, ContactMonitor, MomentumObserver, Robot
 
 from .logs import BoolArray, FloatArray, TouchLog
 from .settings import Settings
@@ -26,6 +26,8 @@ class Replay:
     collision: BoolArray  # (n,)
     onset: BoolArray  # (n,)
     external_torque: FloatArray  # (n, 7), free of bias [Nm]
+    # The first of each row, where the monitor's own contacts are judged.
+    contacts: tuple[Contact | None, ...] = ()
 
 
 def replay(robot: Robot, log: TouchLog, settings: Settings) -> Replay:

@@ -32,7 +32,8 @@ def print_study(study: Study, console: Console, *, touches: bool = False) -> Non
     repeated = np.mean([log.repeated for log in study.logs])
     notes = (
         "* The settings were chosen with these files alone; calibrated: detection has no setting,",
-        "and noise and levels come from the untouched stretches of the other files.",
+        "noise and levels come from the untouched stretches of the other files, and links and",
+        "points are those of the monitor's last report of a touch.",
         "Onset: delay of the detection after the start of the label, median/maximum. Labels",
         f"were set by hand: an onset up to {EARLY:g} s earlier belongs to the contact (early).",
         "False: onsets at any other time, per minute of that time.",

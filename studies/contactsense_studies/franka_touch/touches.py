@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from contactsense import ContactIsolator, Robot
+from contactsense import Contact, ContactIsolator, Robot
 
 from .logs import BoolArray, FloatArray, TouchLog
 from .replay import Replay
@@ -25,7 +26,7 @@ class TouchResult:
     start: float  # label's begin [s]
     end: float  # label's end [s]
     delay: float | None  # first onset after the label's begin (negative: before) [s]; None: not felt
-    link: int | None  # link named; None: no joint feels the mean torque
+    link: int | None  # link named; None: no joint feels the mean torque, or no contact was reported
     located: bool
     point: FloatArray | None  # (3,) in the frame of the link named [m], where located
 
@@ -62,7 +63,10 @@ def judge(robot: Robot, log: TouchLog, told: Replay, settings: Settings, tuning:
         free &= (log.time < start - EARLY) | (log.time > end)
         delay = float(onsets[own][0]) - start if own.any() else None
         rows = slice(first, last + 1)
-        link, point = name_link(robot, isolator, log.q[rows], told.external_torque[rows])
+        if told.contacts:
+            link, point = last_contact(robot, told.contacts[rows])
+        else:
+            link, point = name_link(robot, isolator, log.q[rows], told.external_torque[rows])
         results.append(TouchResult(start, end, delay, link, point is not None, point))
     return LogResult(
         log.name,
@@ -86,6 +90,14 @@ def name_link(
     if not contacts:
         return None, None
     contact = contacts[0]
+    return link_number(robot, contact.link), contact.point_local if contact.located else None
+
+
+def last_contact(robot: Robot, contacts: Sequence[Contact | None]) -> tuple[int | None, FloatArray | None]:
+    """Link and, where located, point in its frame, of the last contact that the monitor reported."""
+    contact = next((contact for contact in reversed(contacts) if contact is not None), None)
+    if contact is None:
+        return None, None
     return link_number(robot, contact.link), contact.point_local if contact.located else None
 
 
