@@ -73,9 +73,7 @@ impl Misfit {
 
     /// The best force, unless that is none.
     pub fn best(&self, friction: f64) -> ([f64; 3], ConePart) {
-        let is_inside = |[normal, x, y]: &[f64; 3]| {
-            *normal >= 0.0 && x * x + y * y <= friction * friction * normal * normal
-        };
+        let is_inside = |[normal, x, y]: &[f64; 3]| *normal >= 0.0 && x.hypot(*y) <= friction * normal;
         let shown = self.pivot();
         let ridged = if shown.is_some() { *self } else { self.ridged() };
         let pivot = shown.unwrap_or_else(|| ridged.free_gain().max(RIDGE));

@@ -5,6 +5,13 @@
 
 mod limit;
 mod misfit;
+/// A force that rounding has put outside the cone, inside it.
+fn inside(force: Vector3<f64>, friction: f64) -> Vector3<f64> {
+    let (across, most) = (force[1].hypot(force[2]), friction * force[0]);
+    let share = if across > most { most / across } else { 1.0 };
+    Vector3::new(force[0], force[1] * share, force[2] * share)
+}
+
 #[cfg(test)]
 mod tests;
 
@@ -14,6 +21,10 @@ use misfit::Misfit;
 
 /// Largest coefficient of friction: beyond it friction is no limit.
 const MOST_FRICTION: f64 = 1e6;
+/// The square of a smaller one is no number any more: there is none.
+const LEAST_FRICTION: f64 = 1e-100;
+/// A smaller force has not all digits of a number any more: there is none (N).
+const SMALLEST: f64 = 1e-290;
 /// Largest sum of the numbers given, so that none of their products overflows.
 const LARGEST: f64 = 1e150;
 
@@ -101,18 +112,18 @@ pub fn best_cone_force(gram: &Matrix3<f64>, products: &Vector3<f64>, friction: f
         return ConeForce::NONE;
     }
     let (gram, products) = (gram / gain, products / product);
-    let friction = if friction > 0.0 { friction.min(MOST_FRICTION) } else { 0.0 };
+    let friction = if friction > LEAST_FRICTION { friction.min(MOST_FRICTION) } else { 0.0 };
     if products[0] + friction * products[1].hypot(products[2]) <= 0.0 {
         return ConeForce::NONE;
     }
     let (misfit, tangents) = Misfit::new(&gram, &products);
     let (force, part) = misfit.best(friction);
-    let force = tangents.back(&force);
+    let force = inside(tangents.back(&force), friction);
     let objective = force.dot(&(gram * force * 0.5 - products)).min(0.0);
     let unit = product / gain;
     let found = ConeForce { force: force * unit, objective: objective * unit * product, part };
     let is_finite = found.objective.is_finite() && found.force.iter().all(|x| x.is_finite());
-    if is_finite {
+    if is_finite && found.force[0] > SMALLEST {
         found
     } else {
         ConeForce::NONE
