@@ -25,7 +25,7 @@ use crate::robot::LinkIndex;
 /// let isolation = &monitor.report().isolation;
 /// let contact = &isolation.contacts[0];
 /// let posterior = contact.posterior.as_ref().expect("one contact without sensors");
-/// assert!(posterior.probability <= 1.0 && posterior.region_radius > 0.0);
+/// assert!(posterior.probability <= 1.0 + 1e-9 && posterior.region_radius > 0.0);
 /// assert_eq!(contact.track.expect("it is followed").id, 0);
 /// // All links together.
 /// let sum: f64 = isolation.link_probabilities[posterior.link_probabilities.clone()].iter().map(|it| it.probability).sum();

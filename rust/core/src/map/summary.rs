@@ -75,7 +75,10 @@ impl Summary {
                 let place = frames.links[leaf.link].pose.transform_point(&leaf.place.point);
                 self.distances.push(((place - point).norm(), *weight));
             }
-            held_within(&mut self.distances)
+            let heaviest = posterior.leaves.iter().zip(&posterior.weights).max_by(|a, b| a.1.total_cmp(b.1));
+            // A piece stands for all of its area.
+            let least = heaviest.map_or(0.0, |(leaf, _)| 0.5 * leaf.area.sqrt());
+            held_within(&mut self.distances).max(least)
         });
         &self.found
     }
