@@ -3,18 +3,17 @@
 use std::sync::Arc;
 
 use contactsense::isolation::{Candidate, Contact, Isolation, LinkProbability};
-use contactsense::nalgebra::Matrix3;
 use contactsense::particle::Mode;
 use contactsense::sensor::JOINT_TORQUES;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::estimate::PyMode;
+use crate::estimate::{matrix, modes};
 use crate::names::Names;
 use crate::once::Once;
 use crate::pickle::{plain_dict, reduced, Reduced};
-use crate::returned::{from_rows, numbers, read_only, vector};
+use crate::returned::{numbers, vector};
 
 type Array<'py> = Bound<'py, PyArray1<f64>>;
 
@@ -258,9 +257,7 @@ impl PyContact {
     #[getter]
     fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let known = self.contact.posterior.as_ref().map(|posterior| posterior.covariance);
-        let c = known.unwrap_or(Matrix3::repeat(f64::NAN));
-        let rows = (0..3).map(|i| [c[(i, 0)], c[(i, 1)], c[(i, 2)]]);
-        self.covariance.get(py, || Ok(read_only(from_rows(py, rows)?)))
+        self.covariance.get(py, || matrix(py, known))
     }
 
     /// Radius of the ball about `point` that holds 90 % of the posterior [m]; NaN without posterior.
@@ -274,10 +271,7 @@ impl PyContact {
     /// The same tuple at every access.
     #[getter]
     fn modes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        self.modes.get(py, || {
-            let wrap = |mode: &Mode| Bound::new(py, PyMode::new(self.names.clone(), *mode));
-            PyTuple::new(py, self.found.modes.iter().map(wrap).collect::<PyResult<Vec<_>>>()?)
-        })
+        self.modes.get(py, || modes(py, &self.names, &self.found.modes))
     }
 
     /// Which contact it is over time: the same number in all ticks of one contact; None where contacts are not followed.

@@ -42,7 +42,7 @@ struct Vectors {
 }
 
 impl PyMode {
-    pub fn new(names: Arc<Names>, mode: Mode) -> Self {
+    fn new(names: Arc<Names>, mode: Mode) -> Self {
         Self { names, mode, vectors: Vectors::default() }
     }
 
@@ -106,6 +106,18 @@ impl PyMode {
         let (link, probability) = (self.link(), self.mode.probability);
         format!("Mode('{link}', point=[{:.4}, {:.4}, {:.4}], probability={probability:.3})", p.x, p.y, p.z)
     }
+}
+
+/// A tuple of modes that live on their own.
+pub fn modes<'py>(py: Python<'py>, names: &Arc<Names>, modes: &[Mode]) -> PyResult<Bound<'py, PyTuple>> {
+    let wrap = |mode: &Mode| Bound::new(py, PyMode::new(names.clone(), *mode));
+    PyTuple::new(py, modes.iter().map(wrap).collect::<PyResult<Vec<_>>>()?)
+}
+
+/// A read-only `(3, 3)` array; NaN where there is none.
+pub fn matrix<'py>(py: Python<'py>, matrix: Option<Matrix3<f64>>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let m = matrix.unwrap_or(Matrix3::repeat(f64::NAN));
+    Ok(read_only(from_rows(py, (0..3).map(|i| [m[(i, 0)], m[(i, 1)], m[(i, 2)]]))?))
 }
 
 pub const ATTRIBUTES: [&str; 16] = [
@@ -225,9 +237,7 @@ impl PyContactEstimate {
     /// The second moment of all particles about `point`, other modes included.
     #[getter]
     fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let c = self.found.estimate.covariance.unwrap_or(Matrix3::repeat(f64::NAN));
-        let rows = (0..3).map(|i| [c[(i, 0)], c[(i, 1)], c[(i, 2)]]);
-        self.covariance.get(py, || Ok(read_only(from_rows(py, rows)?)))
+        self.covariance.get(py, || matrix(py, self.found.estimate.covariance))
     }
 
     /// Share of the particles' weight on each link that is looked on, by the link's name; a new dict at every access.
@@ -243,11 +253,7 @@ impl PyContactEstimate {
     /// Clusters of particles, best first; at most eight. The same tuple at every access.
     #[getter]
     fn modes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        self.modes.get(py, || {
-            let wrap = |mode: &Mode| Bound::new(py, PyMode::new(self.names.clone(), *mode));
-            let modes: Vec<_> = self.found.estimate.modes.iter().map(wrap).collect::<PyResult<_>>()?;
-            PyTuple::new(py, modes)
-        })
+        self.modes.get(py, || modes(py, &self.names, &self.found.estimate.modes))
     }
 
     /// Whether the data do not say which link, or where on it, or motion has not confirmed yet that it is a single push.

@@ -52,20 +52,13 @@ impl Summary {
         found.log_evidence = posterior.log_evidence();
         let joints = self.left.len();
         let mut misfit = f64::INFINITY;
-        for mode in &mut found.estimate.modes {
+        for mode in &found.estimate.modes {
             let frame = &frames.links[mode.link.get()];
-            let point = frame.pose.inverse_transform_point(&mode.point);
-            let normal = frame.pose.inverse_transform_vector(&mode.normal);
-            // A mode that pulls is one that pushes on the other side.
-            let inward = if mode.force.dot(&mode.normal) > 0.0 { -normal } else { normal };
-            let best = BestForce::of(
-                frame,
-                measurement.target().on(mode.link.get()),
-                self.friction,
-                &point,
-                &inward,
-            );
-            misfit = misfit.min(measurement.left_over(mode.link.get(), &point, &best.force, &mut self.left));
+            let mode = mode.in_link_frame(&frame.pose);
+            let (link, normal) = (mode.link.get(), mode.pushed_normal());
+            let target = measurement.target().on(link);
+            let best = BestForce::of(frame, target, self.friction, &mode.point, &normal);
+            misfit = misfit.min(measurement.left_over(link, &mode.point, &best.force, &mut self.left));
         }
         found.residual = if misfit.is_finite() { (misfit / joints as f64).sqrt() } else { 0.0 };
         found.explained = misfit <= upper_limit(joints);

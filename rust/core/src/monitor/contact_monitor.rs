@@ -122,7 +122,7 @@ impl ContactMonitor {
         let bias_tracker = |constant| BiasTracker::new(constant, greatest_bias);
         let isolator = ContactIsolator::new(robot.clone(), &options.isolation)?;
         let sensors = options.isolation.sensors.len();
-        let tracker = options.tracker(&robot)?;
+        let tracker = options.tracker(&robot, &noise)?;
         let mut monitor = Self {
             clock: SampleClock::new(options.dt),
             source: None,

@@ -7,6 +7,7 @@ use crate::detection::{ContactTest, ReleaseRule, FOLLOW_TIME};
 use crate::error::{Error, Result};
 use crate::isolation::IsolatorOptions;
 use crate::robot::Robot;
+use crate::torque::TorqueNoise;
 use crate::tracking::ContactTracker;
 
 /// Settings of a [`ContactMonitor`](super::ContactMonitor).
@@ -129,17 +130,18 @@ impl MonitorOptions {
         }))
     }
 
-    /// What finds places of contacts by samples of the surface. Torques that sensors or wanted points share are left to closed forms, and so
-    /// are those of a floating base, which are far more exact than samples are close.
+    /// What finds places of contacts by samples of the surface, with the noise of the torques. Torques that sensors or wanted
+    /// points share are left to closed forms, and so are those of a floating base, which are far more exact than samples are
+    /// close.
     ///
     /// # Errors
     /// [`Error::Input`] names the option.
-    pub(super) fn tracker(&self, robot: &Arc<Robot>) -> Result<Option<ContactTracker>> {
+    pub(super) fn tracker(&self, robot: &Arc<Robot>, noise: &TorqueNoise) -> Result<Option<ContactTracker>> {
         let shared = !self.isolation.sensors.is_empty() || !self.wanted_points.is_empty();
         if self.samples == 0 || shared || robot.floating_base() || !robot.has_contact_links() {
             return Ok(None);
         }
-        let (_, noise) = self.isolation.threshold_and_noise(robot)?;
+        let noise = noise.clone();
         ContactTracker::new(Arc::clone(robot), self.samples, noise, self.isolation.locate_within).map(Some)
     }
 

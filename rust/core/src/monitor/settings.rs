@@ -64,7 +64,7 @@ impl ContactMonitor {
             bias.set_limit(greatest_bias);
         }
         self.release.set_rule(rule);
-        self.tracker = options.tracker(&self.robot)?;
+        self.tracker = options.tracker(&self.robot, &noise)?;
         self.threshold = threshold;
         self.deviation.copy_from_slice(noise.at_rest());
         self.detector.set_wrench_threshold(wrench_threshold);

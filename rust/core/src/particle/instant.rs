@@ -3,7 +3,7 @@
 
 use nalgebra::Vector3;
 
-use crate::robot::{JointKind, Kinematics, Robot};
+use crate::robot::{Kinematics, Robot};
 use crate::spatial::Pose;
 use crate::torque::{Frames, Target, TorqueNoise};
 
@@ -28,8 +28,8 @@ pub(super) struct Instant {
     pub torque: Vec<f64>,
     pub stated: Vec<f64>,
     pub deviation: Vec<f64>,
-    /// Whether a velocity variable is a rotation's.
-    pub turning: Vec<bool>,
+    /// By velocity variable: whether its torque is a force.
+    pub is_force: Vec<bool>,
     /// One a link of the robot.
     extents: Vec<Extent>,
 }
@@ -46,7 +46,7 @@ impl Instant {
         Instant {
             kinematics: Kinematics::new(robot),
             noise,
-            turning: turning(robot),
+            is_force: robot.forces(),
             target: Target::new(&frames),
             torque: vec![0.0; robot.nv()],
             stated: vec![1.0; robot.nv()],
@@ -106,20 +106,4 @@ impl Instant {
         let turned = (here.rotation - pose.rotation).norm() / std::f64::consts::SQRT_2;
         centre.norm() + turned * radius
     }
-}
-
-/// Whether each velocity variable is a rotation's.
-fn turning(robot: &Robot) -> Vec<bool> {
-    let mut turning = vec![false; robot.nv()];
-    for body in 0..robot.bodies.len() {
-        let range = robot.velocity_range(body);
-        // A free flyer's linear part comes first.
-        let first = match robot.bodies[body].kind {
-            JointKind::Prismatic => range.end,
-            JointKind::FreeFlyer => range.start + 3,
-            JointKind::Revolute | JointKind::Continuous => range.start,
-        };
-        turning[first..range.end].fill(true);
-    }
-    turning
 }

@@ -38,9 +38,10 @@ impl LeftOver {
 
     /// About as much moment at the joints that turn [Nm].
     pub fn moment(&self, instant: &Instant) -> f64 {
-        let Instant { torque, deviation: noise, turning, .. } = instant;
+        let Instant { torque, deviation: noise, is_force, .. } = instant;
         let (mut moment, mut deviations) = (0.0, 0.0);
-        for ((torque, noise), _) in torque.iter().zip(noise).zip(turning).filter(|(_, turns)| **turns) {
+        for ((torque, noise), _) in torque.iter().zip(noise).zip(is_force).filter(|(_, is_force)| !**is_force)
+        {
             moment += torque * torque;
             deviations += (torque / noise).powi(2);
         }

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::robot::LinkIndex;
+use crate::spatial::Pose;
 
 /// A place where the contact may be.
 ///
@@ -37,4 +38,35 @@ pub struct Mode {
     pub probability: f64,
     /// Root of the mean squared distance of the mode's samples from their mean (m).
     pub spread: f64,
+}
+
+impl Mode {
+    /// The same in the frame of its link, which has this pose.
+    pub(crate) fn in_link_frame(&self, pose: &Pose) -> Self {
+        Mode {
+            point: pose.inverse_transform_point(&self.point),
+            normal: pose.inverse_transform_vector(&self.normal),
+            force: pose.inverse_transform_vector(&self.force),
+            ..*self
+        }
+    }
+
+    /// The inverse: from the frame of its link to the world's.
+    pub(crate) fn in_world_frame(&self, pose: &Pose) -> Self {
+        Mode {
+            point: pose.transform_point(&self.point),
+            normal: pose.rotation * self.normal,
+            force: pose.rotation * self.force,
+            ..*self
+        }
+    }
+
+    /// The normal of the side that its force enters: a force that pulls pushes from within.
+    pub(crate) fn pushed_normal(&self) -> Vector3<f64> {
+        if self.force.dot(&self.normal) > 0.0 {
+            -self.normal
+        } else {
+            self.normal
+        }
+    }
 }

@@ -6,7 +6,13 @@ use crate::error::{Error, Result};
 impl Robot {
     /// Whether there is a link that moves and has a surface.
     pub(crate) fn has_contact_links(&self) -> bool {
-        self.touchable_links().iter().any(|link| self.links()[link.get()].body != WORLD)
+        self.moving_touchable_links().next().is_some()
+    }
+
+    /// Indices of the links that move and have a surface.
+    fn moving_touchable_links(&self) -> impl Iterator<Item = usize> + '_ {
+        let links = self.touchable_links().iter().map(|link| link.get());
+        links.filter(|&index| self.links()[index].body != WORLD)
     }
 
     /// Indices, in order, of the links that move and have a surface: all of them, or those named in the argument `links`.
@@ -15,8 +21,7 @@ impl Robot {
     /// # Errors
     /// [`Error::Input`] names the argument.
     pub(crate) fn contact_links(&self, names: Option<&[String]>, user: &str) -> Result<Vec<usize>> {
-        let moving = |&index: &usize| self.links()[index].body != WORLD;
-        let all: Vec<usize> = self.touchable_links().iter().map(|link| link.get()).filter(moving).collect();
+        let all: Vec<usize> = self.moving_touchable_links().collect();
         if all.is_empty() {
             let problem = format!("no link that moves has a surface; {user} needs one to look on");
             return Err(Error::input("robot", problem));

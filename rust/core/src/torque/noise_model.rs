@@ -221,9 +221,14 @@ impl TorqueNoise {
 
     /// Sets the standard deviation of each torque (Nm).
     pub fn set_deviations(&self, torque: &[f64], deviations: &mut [f64]) {
+        self.set_deviations_beside(&self.at_rest, torque, deviations);
+    }
+
+    /// The same where the standard deviations without contact are others.
+    pub fn set_deviations_beside(&self, at_rest: &[f64], torque: &[f64], deviations: &mut [f64]) {
         let largest = largest(torque);
         for (k, deviation) in deviations.iter_mut().enumerate() {
-            *deviation = self.growing(k, 1.0, torque[k], largest).hypot(self.at_rest[k]);
+            *deviation = self.growing(k, 1.0, torque[k], largest).hypot(at_rest[k]);
         }
     }
 }

@@ -45,7 +45,9 @@ pub(crate) struct ContactTracker {
     noise: TorqueNoise,
     friction: f64,
     locate_within: f64,
+    /// Standard deviations of a tick's torque without contact, and with the errors that grow with a contact's (Nm, N).
     deviation: Vec<f64>,
+    in_contact: Vec<f64>,
     left: Vec<f64>,
     identities: Identities,
     /// Where the contact can be by the last posterior that was worked out: points, forces and normals in the links' frames.
@@ -77,6 +79,7 @@ impl ContactTracker {
             noise,
             locate_within,
             deviation: vec![1.0; robot.nv()],
+            in_contact: vec![1.0; robot.nv()],
             left: vec![0.0; robot.nv()],
             identities: Identities::new(),
             place: None,
@@ -137,8 +140,9 @@ impl ContactTracker {
         }
         self.strongest = if first { strength } else { self.strongest.max(strength) };
         self.measured = evidence.time;
-        self.add_growing(evidence.torque);
-        self.posterior.measure(evidence.kinematics, evidence.torque, &self.deviation);
+        let Self { posterior, noise, deviation, in_contact, .. } = self;
+        noise.set_deviations_beside(deviation, evidence.torque, in_contact);
+        posterior.measure(evidence.kinematics, evidence.torque, in_contact);
     }
 
     /// Standard deviations without contact.
@@ -153,15 +157,7 @@ impl ContactTracker {
         self.concluded = self.strongest;
         let found = self.summary.read(&self.posterior);
         let frames = self.posterior.newest().frames();
-        let local = |mode: &Mode| {
-            let pose = &frames.links[mode.link.get()].pose;
-            Mode {
-                point: pose.inverse_transform_point(&mode.point),
-                normal: pose.inverse_transform_vector(&mode.normal),
-                force: pose.inverse_transform_vector(&mode.force),
-                ..*mode
-            }
-        };
+        let local = |mode: &Mode| mode.in_link_frame(&frames.links[mode.link.get()].pose);
         self.place = found.estimate.contact.as_ref().map(local);
         self.modes.clear();
         self.modes.extend(found.estimate.modes.iter().map(local));
@@ -170,11 +166,9 @@ impl ContactTracker {
     /// The force of a tick at a place on a link, in its frame (N); none where the torques do not determine it.
     fn force(&mut self, evidence: &TickEvidence<'_>, place: &Mode) -> Option<Vector3<f64>> {
         let link = place.link.get();
-        self.weigh(evidence);
         self.now.set_on(link, &self.robot, evidence.kinematics, evidence.newest, &self.deviation);
         let (frame, target) = (&self.now.frames().links[link], self.now.target().on(link));
-        // One that pulls pushes from within.
-        let outward = if place.force.dot(&place.normal) > 0.0 { -place.normal } else { place.normal };
+        let outward = place.pushed_normal();
         let best =
             BestForce::of(frame, target, ForceModel::FrictionCone(self.friction), &place.point, &outward);
         if best.normal <= DETERMINED * best.variance.sqrt() {
@@ -195,19 +189,10 @@ impl ContactTracker {
         point: &Vector3<f64>,
         force: &Vector3<f64>,
     ) -> f64 {
-        self.weigh(evidence);
-        self.add_growing(evidence.newest);
-        let Self { now, robot, deviation, left, .. } = self;
-        now.set_on(link.get(), robot, evidence.kinematics, evidence.newest, deviation);
+        let Self { now, robot, noise, deviation, in_contact, left, .. } = self;
+        noise.set_deviations_beside(deviation, evidence.newest, in_contact);
+        now.set_on(link.get(), robot, evidence.kinematics, evidence.newest, in_contact);
         now.left_over(link.get(), point, force, left)
-    }
-
-    /// Adds the errors that grow with the contact's torque to the standard deviations.
-    fn add_growing(&mut self, torque: &[f64]) {
-        let largest = crate::torque::largest(torque);
-        for (k, deviation) in self.deviation.iter_mut().enumerate() {
-            *deviation = deviation.hypot(self.noise.growing(k, 1.0, torque[k], largest));
-        }
     }
 
     fn answer(&mut self, evidence: &TickEvidence<'_>, isolation: &mut Isolation) {
@@ -233,14 +218,14 @@ impl ContactTracker {
             let near = |other: ContactPlace| (other.point - point).norm() <= region_radius.max(AGREES);
             contact.link == place.link && contact.place.is_some_and(near)
         };
-        let force = self.force(evidence, &place);
         let contradicted = closed_form.as_ref().filter(|contact| !agrees(contact));
         if let Some(other) = contradicted {
             let size = evidence.newest.iter().map(|torque| torque * torque).sum::<f64>().sqrt();
             if other.verified && isolation.residual < EXACT * size {
                 return;
             }
-            let own = self.misfit(evidence, place.link, &place.point, &force.unwrap_or_default());
+            let force = self.force(evidence, &place).unwrap_or_default();
+            let own = self.misfit(evidence, place.link, &place.point, &force);
             let pose = evidence.kinematics.link_pose(&self.robot, other.link);
             let at = other.place.map_or(Vector3::zeros(), |place| place.point_local);
             let push = pose.inverse_transform_vector(&other.force().unwrap_or_default());
@@ -251,7 +236,7 @@ impl ContactTracker {
         // Two answers that both explain the torques: neither is sure.
         let sure = contradicted.is_none() && region_radius <= self.locate_within;
         let mut contact = closed_form.filter(agrees).unwrap_or_else(|| {
-            let force = force.map(|force| pose.rotation * force);
+            let force = self.force(evidence, &place).map(|force| pose.rotation * force);
             Contact {
                 place: Some(ContactPlace {
                     point,
@@ -266,15 +251,11 @@ impl ContactTracker {
         });
         contact.located = sure;
         isolation.modes.clear();
-        isolation.modes.extend(self.modes.iter().map(|mode| {
-            let pose = evidence.kinematics.link_pose(&self.robot, mode.link);
-            Mode {
-                point: pose.transform_point(&mode.point),
-                normal: pose.rotation * mode.normal,
-                force: pose.rotation * mode.force,
-                ..*mode
-            }
-        }));
+        isolation.modes.extend(
+            self.modes
+                .iter()
+                .map(|mode| mode.in_world_frame(&evidence.kinematics.link_pose(&self.robot, mode.link))),
+        );
         isolation.link_probabilities.clear();
         let links = self.links.iter().zip(&self.summary.estimate().estimate.link_probabilities);
         isolation

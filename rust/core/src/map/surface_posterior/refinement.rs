@@ -1,8 +1,10 @@
 //! Smaller pieces of surface where the posterior is narrower than samples are apart.
 
+use nalgebra::Vector3;
+
 use super::{Leaf, Stage, SurfacePosterior, DIVIDED, MOST_DIVIDED, STEP};
 use crate::spatial::basis::across;
-use crate::surface::SurfacePoint;
+use crate::surface::{Surface, SurfacePoint};
 use crate::torque::{PlaceBlock, LANES};
 
 /// The best piece of another link or side is divided too where its weight's logarithm is less than this below the best: that
@@ -53,11 +55,7 @@ impl SurfacePosterior {
                 work += PROJECTION;
             }
             let Some(surface) = self.robot.links()[leaf.link].surface.as_ref() else { continue };
-            let places = leaf.quarters().map(|middle| {
-                let near = surface.closest_point_near(&middle, leaf.place.triangle);
-                SurfacePoint { point: near.point, normal: near.normal, triangle: near.triangle }
-            });
-            let block = PlaceBlock::new(&places.map(|place| (place.point, place.normal)));
+            let (places, block) = projected(surface, leaf.quarters(), leaf.place.triangle);
             let logs = self.log_likelihood(leaf.link, &block)[usize::from(leaf.pulls)];
             let area = 0.25 * leaf.area;
             for (k, (place, log)) in places.into_iter().zip(logs).enumerate() {
@@ -85,11 +83,8 @@ impl SurfacePosterior {
             let own = self.log_likelihood(leaf.link, &here)[side][0];
             let beside = across(&place.normal);
             let other = place.normal.cross(&beside);
-            let around = [beside, -beside, other, -other].map(|aside| {
-                let near = surface.closest_point_near(&(place.point + aside * step), place.triangle);
-                SurfacePoint { point: near.point, normal: near.normal, triangle: near.triangle }
-            });
-            let block = PlaceBlock::new(&around.map(|place| (place.point, place.normal)));
+            let around = [beside, -beside, other, -other].map(|aside| place.point + aside * step);
+            let (around, block) = projected(surface, around, place.triangle);
             let logs = self.log_likelihood(leaf.link, &block)[side];
             let best = (0..LANES).fold(0, |best, k| if logs[k] > logs[best] { k } else { best });
             if logs[best] <= own || surface.hides(&around[best].point, around[best].triangle) {
@@ -99,4 +94,17 @@ impl SurfacePosterior {
         }
         place
     }
+}
+
+/// The points of the surface nearest to these, around a triangle.
+fn projected(
+    surface: &Surface,
+    points: [Vector3<f64>; LANES],
+    triangle: Option<u32>,
+) -> ([SurfacePoint; LANES], PlaceBlock) {
+    let places = points.map(|point| {
+        let near = surface.closest_point_near(&point, triangle);
+        SurfacePoint { point: near.point, normal: near.normal, triangle: near.triangle }
+    });
+    (places, PlaceBlock::new(&places.map(|place| (place.point, place.normal))))
 }
