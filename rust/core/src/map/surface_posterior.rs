@@ -24,8 +24,8 @@ const MOST_LEVELS: usize = 12;
 /// Pieces with less than this share of the weightiest one's are not divided, and those with less than this are left out.
 const DIVIDED: f64 = 0.02;
 const KEPT: f64 = 1e-4;
-/// A contact anywhere on a piece of surface of edge s is off by this times s in each direction, root mean square: s / sqrt(12).
-const PATCH: f64 = 0.289;
+/// Pieces of surface are taken as flat: a contact of a force f on a piece of edge s, which is curved, errs by this times s f.
+const CURVED: f64 = 0.05;
 /// Errors of the torque by the size of pieces do not matter once they are less than this share of the noise.
 const FINE: f64 = 0.3;
 /// A posterior that is spread over so many pieces needs no finer ones.
@@ -149,7 +149,7 @@ impl SurfacePosterior {
         self.edge = self.samples.spacing();
         self.level = 0;
         let force = self.rough_force();
-        self.blur(PATCH * self.edge * force);
+        self.blur(CURVED * self.edge * force);
         self.stage = Stage::Samples { link: 0, block: 0, entry: 0 };
     }
 
@@ -265,12 +265,12 @@ impl SurfacePosterior {
         let force = self.force_at(best);
         let newest = self.newest().stated().iter().copied();
         let noise = newest.fold(f64::INFINITY, f64::min);
-        if self.effective > ENOUGH || PATCH * self.edge * force < FINE * noise {
+        if self.effective > ENOUGH || CURVED * self.edge * force < FINE * noise {
             return self.finish();
         }
         self.level += 1;
         self.edge *= 0.5;
-        self.blur(PATCH * self.edge * force);
+        self.blur(CURVED * self.edge * force);
         self.choose(best);
         Stage::Pieces { next: 0 }
     }
@@ -311,8 +311,8 @@ impl SurfacePosterior {
 
     /// Size of the normal force at a piece by the newest measurement (N).
     fn force_at(&self, leaf: usize) -> f64 {
-        let Leaf { link, place, pulls, .. } = &self.leaves[leaf];
-        let block = PlaceBlock::new(&[(place.point, place.normal); LANES]);
+        let Leaf { link, place, pulls, area, .. } = &self.leaves[leaf];
+        let block = PlaceBlock::new(&[(place.point, place.normal, *area); LANES]);
         let found = self.newest().likelihood(&self.prior, *link, &block);
         if *pulls {
             found.pull[0]

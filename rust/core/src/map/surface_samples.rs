@@ -1,7 +1,5 @@
 //! Samples of the surface, evenly spread over each link, and enough of them on small links too.
 
-use nalgebra::Vector3;
-
 use crate::error::{Error, Result};
 use crate::robot::Robot;
 use crate::surface::SurfacePoint;
@@ -92,15 +90,19 @@ impl LinkSamples {
         }
         let mut areas = vec![0.0; places.len()];
         nearest.iter().for_each(|(_, owner)| areas[*owner] += area / drawn.len() as f64);
-        let blocks = places.chunks(LANES).map(block).collect();
+        let blocks = places
+            .chunks(LANES)
+            .zip(areas.chunks(LANES))
+            .map(|(places, areas)| block(places, areas))
+            .collect();
         LinkSamples { link, places, areas, blocks }
     }
 }
 
-fn block(places: &[SurfacePoint]) -> PlaceBlock {
+fn block(places: &[SurfacePoint], areas: &[f64]) -> PlaceBlock {
     let of = |k: usize| {
-        let place: Option<&SurfacePoint> = places.get(k).or(places.last());
-        place.map_or((Vector3::zeros(), Vector3::z()), |place| (place.point, place.normal))
+        let k = k.min(places.len() - 1);
+        (places[k].point, places[k].normal, areas[k])
     };
     PlaceBlock::new(&std::array::from_fn(of))
 }

@@ -7,6 +7,7 @@ mod force_model;
 mod frames;
 mod link_target;
 mod noise_model;
+mod place_step;
 mod push_likelihood;
 mod target;
 
@@ -18,5 +19,6 @@ pub use force_model::ForceModel;
 pub(crate) use frames::{Frame, Frames};
 pub use noise_model::NoiseModel;
 pub(crate) use noise_model::{largest, TorqueNoise, LEVEL};
+pub(crate) use place_step::PlaceStep;
 pub(crate) use push_likelihood::{ForcePrior, PlaceBlock, PushLikelihood, LANES};
 pub(crate) use target::Target;

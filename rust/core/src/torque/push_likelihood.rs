@@ -7,6 +7,7 @@ use wide::f64x4;
 use super::force_model::directions;
 use super::frames::Frame;
 use super::link_target::LinkTarget;
+use super::place_step::PlaceStep;
 
 /// Points that are worked on at once.
 pub(crate) const LANES: usize = 4;
@@ -19,24 +20,31 @@ const NO_FRICTION: f64 = 1e24;
 
 type Lanes3 = [f64x4; 3];
 
-/// Points of one link's surface, in its frame.
+/// Pieces of one link's surface, in its frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PlaceBlock {
     point: Lanes3,
     /// Inward normal, and two directions across it.
     directions: [Lanes3; 3],
+    /// Of a contact's distance from the point along each of these two (m^2).
+    variance: f64x4,
 }
 
+/// A contact anywhere on a piece of surface of edge s is taken as a normal distribution about its middle with this times s as
+/// standard deviation in each direction: such distributions a distance s apart sum up to an even one but for a tenth.
+const PIECE: f64 = 0.45;
+
 impl PlaceBlock {
-    /// Of points and outward normals.
-    pub fn new(places: &[(Vector3<f64>, Vector3<f64>); LANES]) -> Self {
+    /// Of points, outward normals, and areas (m^2).
+    pub fn new(pieces: &[(Vector3<f64>, Vector3<f64>, f64); LANES]) -> Self {
         let lanes = |value: &dyn Fn(usize) -> f64| f64x4::new(std::array::from_fn(value));
-        let directions = places.map(|(_, normal)| directions(&normal));
+        let directions = pieces.map(|(_, normal, _)| directions(&normal));
         PlaceBlock {
-            point: std::array::from_fn(|axis| lanes(&|k| places[k].0[axis])),
+            point: std::array::from_fn(|axis| lanes(&|k| pieces[k].0[axis])),
             directions: std::array::from_fn(|which| {
                 std::array::from_fn(|axis| lanes(&|k| directions[k][which][axis]))
             }),
+            variance: lanes(&|k| PIECE * PIECE * pieces[k].2),
         }
     }
 }
@@ -90,22 +98,29 @@ fn dot(a: &Lanes3, b: &Lanes3) -> f64x4 {
 }
 
 impl ForcePrior {
-    /// For a block of points on one link. The force across the normal is integrated out as a Gaussian; the normal force by
-    /// Laplace's method.
+    /// What a torque says of how far a contact moves that pushes or pulls at a point of a link: takes it into `step`, as `share`
+    /// of a measurement.
+    #[inline]
+    pub fn add_to(&self, step: &mut PlaceStep, frame: &Frame, target: &LinkTarget, pulls: bool, share: f64) {
+        step.take_in(frame, target, if pulls { -1.0 } else { 1.0 }, self.slack, share);
+    }
+
+    /// For a block of pieces on one link. The force across the normal and the place on the piece are integrated out as Gaussians,
+    /// the latter for the force that is likeliest in the middle; the normal force by Laplace's method.
     #[inline]
     pub fn likelihood(&self, frame: &Frame, target: &LinkTarget, block: &PlaceBlock) -> PushLikelihood {
         let part = |row, column| frame.gram.fixed_view::<3, 3>(row, column).into_owned();
         let (linear, mixed, angular) = (part(0, 0), part(0, 3), part(3, 3));
         let point = &block.point;
         // K = [1; [p]x]' gram [1; [p]x]: what a force at the point does.
-        let mixed = cross_splat(&mixed, point);
+        let beside = cross_splat(&mixed, point);
         let turned = cross_splat(&angular, point);
         let gram: [Lanes3; 3] = std::array::from_fn(|row| {
             std::array::from_fn(|column| {
                 // [p]x' M, by columns of M = angular [p]x.
                 let [a, b] = [(row + 1) % 3, (row + 2) % 3];
                 let moment = point[b] * turned[a][column] - point[a] * turned[b][column];
-                mixed[row][column] + mixed[column][row] + moment + linear[(row, column)]
+                beside[row][column] + beside[column][row] + moment + linear[(row, column)]
             })
         });
         let [force, moment] = [target.product.fixed_rows::<3>(0), target.product.fixed_rows::<3>(3)];
@@ -115,43 +130,57 @@ impl ForcePrior {
             point[b] * moment[a] - point[a] * moment[b] + force[axis]
         });
         let applied = block.directions.map(|direction| gram.map(|row| dot(&row, &direction)));
-        let of = |a: usize, b: usize| dot(&block.directions[a], &applied[b]);
-        let (gain, first, second) = (of(0, 0), of(1, 0), of(2, 0));
-        let (across_1, across_2, across_12) = (of(1, 1), of(2, 2), of(1, 2));
-        let [along, beside_1, beside_2] = block.directions.map(|direction| dot(&direction, &product));
-
-        let [least, greatest] = self.range.map(f64x4::splat);
-        let bound = |force: f64x4| force.max(least).min(greatest);
-        let tiny = f64x4::splat(LEAST_GAIN);
-        let mut size = bound((along / (gain + tiny)).abs());
-        let (mut precision, mut determinant) = (tiny, tiny);
-        let (mut left, mut shown, mut explained) = (gain, along, f64x4::splat(0.0));
-        for _ in 0..PASSES {
-            let deviation = size * self.slack;
-            precision = (f64x4::splat(1.0) / (deviation * deviation + tiny)).min(f64x4::splat(NO_FRICTION));
-            let (one, two) = (across_1 + precision, across_2 + precision);
-            determinant = one * two - across_12 * across_12;
-            let inverse = f64x4::splat(1.0) / determinant;
-            let solve = |a: f64x4, b: f64x4| {
-                ((two * a - across_12 * b) * inverse, (one * b - across_12 * a) * inverse)
-            };
-            let (of_unit_1, of_unit_2) = solve(first, second);
-            let (of_target_1, of_target_2) = solve(beside_1, beside_2);
-            left = (gain - first * of_unit_1 - second * of_unit_2).max(tiny);
-            shown = along - first * of_target_1 - second * of_target_2;
-            explained = beside_1 * of_target_1 + beside_2 * of_target_2;
-            size = bound((shown / left).abs());
+        let mut forces = Forces {
+            gram: std::array::from_fn(|a| std::array::from_fn(|b| dot(&block.directions[a], &applied[b]))),
+            product: block.directions.map(|direction| dot(&direction, &product)),
+        };
+        let alone = forces.product[0] / (forces.gram[0][0] + f64x4::splat(LEAST_GAIN));
+        let best = self.best_force(&forces, alone);
+        let [first, second] = moments(&block.directions, &best.force);
+        // What these moments do, and together with a force at the point.
+        let alone = [first, second].map(|moment| times(&angular, &moment));
+        let with_force = [first, second].map(|moment| -> Lanes3 {
+            std::array::from_fn(|row| {
+                let mixed =
+                    moment[0] * mixed[(row, 0)] + moment[1] * mixed[(row, 1)] + moment[2] * mixed[(row, 2)];
+                mixed + turned[0][row] * moment[0] + turned[1][row] * moment[1] + turned[2][row] * moment[2]
+            })
+        });
+        let one = f64x4::splat(1.0);
+        // In standard deviations of the displacement.
+        let scale = block.variance.sqrt();
+        let (g11, g22) =
+            (dot(&first, &alone[0]) * block.variance + one, dot(&second, &alone[1]) * block.variance + one);
+        let g12 = dot(&first, &alone[1]) * block.variance;
+        let [h1, h2] =
+            [first, second].map(|m| (m[0] * moment[0] + m[1] * moment[1] + m[2] * moment[2]) * scale);
+        let [c1, c2] = with_force.map(|row| block.directions.map(|direction| dot(&direction, &row) * scale));
+        let determinant = g11 * g22 - g12 * g12;
+        let inverse = one / determinant;
+        let solve = |a: f64x4, b: f64x4| ((g22 * a - g12 * b) * inverse, (g11 * b - g12 * a) * inverse);
+        let by_place = solve(h1, h2);
+        let place_explains = h1 * by_place.0 + h2 * by_place.1;
+        for a in 0..3 {
+            let share = solve(c1[a], c2[a]);
+            for b in a..3 {
+                let left = forces.gram[a][b] - c1[b] * share.0 - c2[b] * share.1;
+                (forces.gram[a][b], forces.gram[b][a]) = (left, left);
+            }
+            forces.product[a] = forces.product[a] - c1[a] * by_place.0 - c2[a] * by_place.1;
         }
+        let found = self.best_force(&forces, best.size);
+        let [least, greatest] = self.range;
         let spread = (greatest / least).ln();
-        let freedom = determinant / (precision * precision);
-        let best = shown / left;
         let side = |force: f64x4, sign: f64, log_prior: f64| {
             let width = force * spread;
             let turn = f64x4::splat(std::f64::consts::TAU);
-            let volume = turn / ((left * width * width + turn) * freedom);
-            (explained + force * (shown * (2.0 * sign) - force * left) + volume.ln()) * 0.5 + log_prior
+            let volume = turn / ((found.left * width * width + turn) * found.freedom * determinant);
+            let explained =
+                place_explains + found.explained + force * (found.shown * (2.0 * sign) - force * found.left);
+            (explained + volume.ln()) * 0.5 + log_prior
         };
-        let (push, pull) = (bound(best), bound(-best));
+        let force = found.shown / found.left;
+        let (push, pull) = (self.bound(force), self.bound(-force));
         PushLikelihood {
             log_push: side(push, 1.0, self.log_push).to_array(),
             log_pull: side(pull, -1.0, self.log_pull).to_array(),
@@ -159,4 +188,88 @@ impl ForcePrior {
             pull: pull.to_array(),
         }
     }
+
+    fn bound(&self, force: f64x4) -> f64x4 {
+        let [least, greatest] = self.range.map(f64x4::splat);
+        force.max(least).min(greatest)
+    }
+
+    /// The likeliest force along the inward normal, and across it: its standard deviation there follows from the normal force,
+    /// which is `rough` to begin with (N).
+    #[inline]
+    fn best_force(&self, forces: &Forces, rough: f64x4) -> Best {
+        let Forces { gram, product: [along, beside_1, beside_2] } = *forces;
+        let tiny = f64x4::splat(LEAST_GAIN);
+        let mut size = self.bound(rough.abs());
+        let mut best = Best::none();
+        for _ in 0..PASSES {
+            let deviation = size * self.slack;
+            let precision =
+                (f64x4::splat(1.0) / (deviation * deviation + tiny)).min(f64x4::splat(NO_FRICTION));
+            let (one, two, both) = (gram[1][1] + precision, gram[2][2] + precision, gram[1][2]);
+            let determinant = one * two - both * both;
+            let inverse = f64x4::splat(1.0) / determinant;
+            let solve = |a: f64x4, b: f64x4| ((two * a - both * b) * inverse, (one * b - both * a) * inverse);
+            let of_unit = solve(gram[0][1], gram[0][2]);
+            let of_target = solve(beside_1, beside_2);
+            best.left = (gram[0][0] - gram[0][1] * of_unit.0 - gram[0][2] * of_unit.1).max(tiny);
+            best.shown = along - gram[0][1] * of_target.0 - gram[0][2] * of_target.1;
+            best.explained = beside_1 * of_target.0 + beside_2 * of_target.1;
+            best.freedom = determinant / (precision * precision);
+            let normal = best.shown / best.left;
+            best.force = [normal, of_target.0 - of_unit.0 * normal, of_target.1 - of_unit.1 * normal];
+            size = self.bound(normal.abs());
+        }
+        best.size = size;
+        best
+    }
+}
+
+/// What forces along a piece's three directions do: products of their torques with each other and with the target's.
+#[derive(Clone, Copy)]
+struct Forces {
+    gram: [Lanes3; 3],
+    product: Lanes3,
+}
+
+/// A normal force, with the force across the normal integrated out.
+#[derive(Clone, Copy)]
+struct Best {
+    /// Along the three directions (N).
+    force: Lanes3,
+    /// Of the normal force, between the prior's limits (N).
+    size: f64x4,
+    /// Squared norm of the torque of a unit of normal force, and its product with the target, but for what friction explains.
+    left: f64x4,
+    shown: f64x4,
+    /// By friction, of the target's squared norm.
+    explained: f64x4,
+    /// What the freedom of friction costs: the square of a factor of the likelihood.
+    freedom: f64x4,
+}
+
+impl Best {
+    fn none() -> Self {
+        let zero = f64x4::splat(0.0);
+        Best { force: [zero; 3], size: zero, left: zero, shown: zero, explained: zero, freedom: zero }
+    }
+}
+
+/// The moments, in the link's frame, by which a force along three directions changes where its point moves by a metre along the
+/// second and the third.
+#[inline]
+fn moments(directions: &[Lanes3; 3], force: &Lanes3) -> [Lanes3; 2] {
+    let [inward, first, second] = directions;
+    // second x inward = -first, inward x first = -second, first x second = -inward.
+    let along = |axis: &Lanes3, other: &Lanes3, of_axis: f64x4, of_other: f64x4| -> Lanes3 {
+        std::array::from_fn(|k| axis[k] * of_axis + other[k] * of_other)
+    };
+    [along(second, inward, force[0], -force[2]), along(first, inward, -force[0], force[1])]
+}
+
+#[inline]
+fn times(matrix: &Matrix3<f64>, vector: &Lanes3) -> Lanes3 {
+    std::array::from_fn(|row| {
+        vector[0] * matrix[(row, 0)] + vector[1] * matrix[(row, 1)] + vector[2] * matrix[(row, 2)]
+    })
 }

@@ -3,15 +3,15 @@
 use nalgebra::Vector3;
 
 use super::{Leaf, Stage, SurfacePosterior, DIVIDED, MOST_DIVIDED, STEP};
-use crate::spatial::basis::across;
 use crate::surface::{Surface, SurfacePoint};
-use crate::torque::{PlaceBlock, LANES};
+use crate::torque::{PlaceBlock, PlaceStep, LANES};
 
 /// The best piece of another link or side is divided too where its weight's logarithm is less than this below the best: that
 /// of its middle may be far below that of its best point.
 const RIVAL: f64 = 30.0;
-/// Moves of a piece before it is divided.
+/// Moves of a piece before it is divided, and the shares of a step that are tried: the surface is curved.
 const UPHILL: usize = 2;
+const SHARES: [f64; LANES] = [1.0, 0.5, 0.25, 0.0];
 /// What it takes to find the four parts of a piece on the surface, in likelihoods of blocks.
 const PROJECTION: usize = 4;
 
@@ -55,9 +55,9 @@ impl SurfacePosterior {
                 work += PROJECTION;
             }
             let Some(surface) = self.robot.links()[leaf.link].surface.as_ref() else { continue };
-            let (places, block) = projected(surface, leaf.quarters(), leaf.place.triangle);
-            let logs = self.log_likelihood(leaf.link, &block)[usize::from(leaf.pulls)];
             let area = 0.25 * leaf.area;
+            let (places, block) = projected(surface, leaf.quarters(), area, leaf.place.triangle);
+            let logs = self.log_likelihood(leaf.link, &block)[usize::from(leaf.pulls)];
             for (k, (place, log)) in places.into_iter().zip(logs).enumerate() {
                 let hidden = surface.hides(&place.point, place.triangle);
                 let log_weight = if hidden { f64::NEG_INFINITY } else { log + without + area.ln() };
@@ -76,35 +76,43 @@ impl SurfacePosterior {
     /// the surface exactly, and the best point may lie between them.
     fn uphill(&self, leaf: &Leaf) -> SurfacePoint {
         let Some(surface) = self.robot.links()[leaf.link].surface.as_ref() else { return leaf.place };
-        let side = usize::from(leaf.pulls);
-        let (mut place, step) = (leaf.place, 0.5 * leaf.area.sqrt());
+        let (mut place, reach) = (leaf.place, leaf.area.sqrt());
         for _ in 0..UPHILL {
-            let here = PlaceBlock::new(&[(place.point, place.normal); LANES]);
-            let own = self.log_likelihood(leaf.link, &here)[side][0];
-            let beside = across(&place.normal);
-            let other = place.normal.cross(&beside);
-            let around = [beside, -beside, other, -other].map(|aside| place.point + aside * step);
-            let (around, block) = projected(surface, around, place.triangle);
-            let logs = self.log_likelihood(leaf.link, &block)[side];
-            let best = (0..LANES).fold(0, |best, k| if logs[k] > logs[best] { k } else { best });
-            if logs[best] <= own || surface.hides(&around[best].point, around[best].triangle) {
+            let Some(step) = self.step_from(leaf, &place, reach) else { break };
+            let tried = SHARES.map(|share| place.point + step * share);
+            let (places, block) = projected(surface, tried, leaf.area, place.triangle);
+            let logs = self.log_likelihood(leaf.link, &block)[usize::from(leaf.pulls)];
+            // The last share is none.
+            let best = (0..LANES).fold(LANES - 1, |best, k| if logs[k] > logs[best] { k } else { best });
+            if best == LANES - 1 || surface.hides(&places[best].point, places[best].triangle) {
                 break;
             }
-            place = around[best];
+            place = places[best];
         }
         place
     }
+
+    /// The step to where the torques are likeliest, at most `reach` (m).
+    fn step_from(&self, leaf: &Leaf, place: &SurfacePoint, reach: f64) -> Option<Vector3<f64>> {
+        let mut step = PlaceStep::at(&place.point, &place.normal);
+        let known = &self.measurements[..self.count];
+        for measurement in known {
+            measurement.add_to(&mut step, &self.prior, leaf.link, leaf.pulls, 1.0 / known.len() as f64);
+        }
+        step.displacement(reach).map(|step| step.cap_magnitude(reach))
+    }
 }
 
-/// The points of the surface nearest to these, around a triangle.
+/// Pieces of an area (m^2) about the points of the surface nearest to these, around a triangle.
 fn projected(
     surface: &Surface,
     points: [Vector3<f64>; LANES],
+    area: f64,
     triangle: Option<u32>,
 ) -> ([SurfacePoint; LANES], PlaceBlock) {
     let places = points.map(|point| {
         let near = surface.closest_point_near(&point, triangle);
         SurfacePoint { point: near.point, normal: near.normal, triangle: near.triangle }
     });
-    (places, PlaceBlock::new(&places.map(|place| (place.point, place.normal))))
+    (places, PlaceBlock::new(&places.map(|place| (place.point, place.normal, area))))
 }
