@@ -18,6 +18,8 @@ pub(super) struct Leaf {
     pub log_weight: f64,
     /// Into the surface, of the newest measurement (N); negative where it pulls.
     pub force: f64,
+    /// Root mean square of the distance of the contact from the place, if it is on this piece (m).
+    pub spread: f64,
 }
 
 impl ContactSamples for Vec<Leaf> {

@@ -9,6 +9,8 @@ use crate::torque::{BestForce, ForceModel};
 
 /// Share of the posterior that a region holds.
 const REGION: f64 = 0.9;
+/// Radius that holds it of a normal distribution along a line, in standard deviations (in two directions it is 1.52).
+const RADIUS: f64 = 1.645;
 
 /// The estimate, and memory to find it.
 #[derive(Debug, Clone)]
@@ -66,12 +68,9 @@ impl Summary {
             self.distances.clear();
             for (leaf, weight) in posterior.leaves.iter().zip(&posterior.weights) {
                 let place = frames.links[leaf.link].pose.transform_point(&leaf.place.point);
-                self.distances.push(((place - point).norm(), *weight));
+                self.distances.push(((place - point).norm().hypot(RADIUS * leaf.spread), *weight));
             }
-            let heaviest = posterior.leaves.iter().zip(&posterior.weights).max_by(|a, b| a.1.total_cmp(b.1));
-            // A piece stands for all of its area.
-            let least = heaviest.map_or(0.0, |(leaf, _)| 0.5 * leaf.area.sqrt());
-            held_within(&mut self.distances).max(least)
+            held_within(&mut self.distances)
         });
         &self.found
     }

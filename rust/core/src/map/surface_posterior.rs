@@ -4,6 +4,8 @@ mod refinement;
 
 use std::sync::Arc;
 
+use refinement::PLACES;
+
 use super::leaves::Leaf;
 use super::measurement::Measurement;
 use super::options::MapOptions;
@@ -66,8 +68,8 @@ pub(crate) struct SurfacePosterior {
     log_weights: Vec<f64>,
     pub(super) weights: Vec<f64>,
     order: Vec<u32>,
-    /// By link and side: its best piece.
-    sides: Vec<Option<usize>>,
+    /// By link and side: its best pieces.
+    sides: Vec<[Option<usize>; PLACES]>,
     pub(super) clusters: Clusters,
     stage: Stage,
     level: usize,
@@ -95,7 +97,7 @@ impl SurfacePosterior {
             log_weights: Vec::with_capacity(most),
             weights: Vec::with_capacity(most),
             order: Vec::with_capacity(most),
-            sides: vec![None; 2 * robot.links().len()],
+            sides: vec![[None; PLACES]; 2 * robot.links().len()],
             clusters: Clusters::new(most, robot.links().len())?,
             stage: Stage::Done,
             level: 0,
@@ -249,6 +251,7 @@ impl SurfacePosterior {
                             pulls,
                             log_weight,
                             force: 0.0,
+                            spread: 0.0,
                         });
                     }
                 }
@@ -298,7 +301,9 @@ impl SurfacePosterior {
             }
             if self.weights[next] > KEPT {
                 let force = self.force_at(next);
+                let spread = self.spread(next);
                 let leaf = &mut self.leaves[next];
+                leaf.spread = spread;
                 leaf.force = if leaf.pulls { -force } else { force };
                 work += 1;
             }

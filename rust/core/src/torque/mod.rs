@@ -20,5 +20,5 @@ pub(crate) use frames::{Frame, Frames};
 pub use noise_model::NoiseModel;
 pub(crate) use noise_model::{largest, TorqueNoise, LEVEL};
 pub(crate) use place_step::PlaceStep;
-pub(crate) use push_likelihood::{ForcePrior, PlaceBlock, PushLikelihood, LANES};
+pub(crate) use push_likelihood::{ForcePrior, PlaceBlock, PushLikelihood, LANES, PIECE};
 pub(crate) use target::Target;

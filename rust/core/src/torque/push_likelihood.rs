@@ -32,7 +32,7 @@ pub(crate) struct PlaceBlock {
 
 /// A contact anywhere on a piece of surface of edge s is taken as a normal distribution about its middle with this times s as
 /// standard deviation in each direction: such distributions a distance s apart sum up to an even one but for a tenth.
-const PIECE: f64 = 0.45;
+pub(crate) const PIECE: f64 = 0.45;
 
 impl PlaceBlock {
     /// Of points, outward normals, and areas (m^2).

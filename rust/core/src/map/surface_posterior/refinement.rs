@@ -4,11 +4,15 @@ use nalgebra::Vector3;
 
 use super::{Leaf, Stage, SurfacePosterior, DIVIDED, MOST_DIVIDED, STEP};
 use crate::surface::{Surface, SurfacePoint};
-use crate::torque::{PlaceBlock, PlaceStep, LANES};
+use crate::torque::{PlaceBlock, PlaceStep, LANES, PIECE};
 
 /// The best piece of another link or side is divided too where its weight's logarithm is less than this below the best: that
 /// of its middle may be far below that of its best point.
 const RIVAL: f64 = 30.0;
+/// So many places of a link and side are followed, at least this far apart (edges of a piece): a line of action may enter a link
+/// more than once.
+pub(super) const PLACES: usize = 3;
+const APART: f64 = 3.0;
 /// Moves of a piece before it is divided, and the shares of a step that are tried: the surface is curved.
 const UPHILL: usize = 2;
 const SHARES: [f64; LANES] = [1.0, 0.5, 0.25, 0.0];
@@ -27,16 +31,27 @@ impl SurfacePosterior {
             order.select_nth_unstable_by(MOST_DIVIDED, |a, b| weight(b).total_cmp(&weight(a)).then(a.cmp(b)));
             order.truncate(MOST_DIVIDED);
         }
-        sides.fill(None);
-        for (k, leaf) in leaves.iter().enumerate() {
-            let side = &mut sides[2 * leaf.link + usize::from(leaf.pulls)];
-            if side.is_none_or(|other: usize| leaves[other].log_weight < leaf.log_weight) {
-                *side = Some(k);
+        sides.fill([None; PLACES]);
+        for rank in 0..PLACES {
+            for (k, leaf) in leaves.iter().enumerate() {
+                let places = &mut sides[2 * leaf.link + usize::from(leaf.pulls)];
+                let beside = |other: &Option<usize>| {
+                    let near = |other: usize| (leaves[other].place.point - leaf.place.point).norm();
+                    other.is_some_and(|other| near(other) < APART * self.edge)
+                };
+                let known = places[..rank].iter().any(|other| other.is_none() || beside(other));
+                let place = &mut places[rank];
+                if !known && place.is_none_or(|other: usize| leaves[other].log_weight < leaf.log_weight) {
+                    *place = Some(k);
+                }
             }
         }
         let least = leaves[best].log_weight - RIVAL;
-        let rivals =
-            sides.iter().flatten().filter(|k| weights[**k] <= floor && leaves[**k].log_weight > least);
+        let rivals = sides
+            .iter()
+            .flatten()
+            .flatten()
+            .filter(|k| weights[**k] <= floor && leaves[**k].log_weight > least);
         order.extend(rivals.take(MOST_DIVIDED).map(|k| *k as u32));
     }
 
@@ -50,10 +65,10 @@ impl SurfacePosterior {
             }
             (next, work) = (next + 1, work + self.count + PROJECTION);
             let mut leaf = self.leaves[index as usize];
-            if self.sides[2 * leaf.link + usize::from(leaf.pulls)] == Some(index as usize) {
-                leaf.place = self.uphill(&leaf);
-                work += PROJECTION;
-            }
+            // The best one of a side may have its best point beyond it; the others have neighbours there.
+            let best = self.sides[2 * leaf.link + usize::from(leaf.pulls)].contains(&Some(index as usize));
+            leaf.place = self.uphill(&leaf, best);
+            work += PROJECTION;
             let Some(surface) = self.robot.links()[leaf.link].surface.as_ref() else { continue };
             let area = 0.25 * leaf.area;
             let (places, block) = projected(surface, leaf.quarters(), area, leaf.place.triangle);
@@ -74,11 +89,14 @@ impl SurfacePosterior {
 
     /// The place of a piece, moved on the surface to where the torques are likelier by up to its own size: pieces do not cover
     /// the surface exactly, and the best point may lie between them.
-    fn uphill(&self, leaf: &Leaf) -> SurfacePoint {
+    fn uphill(&self, leaf: &Leaf, best: bool) -> SurfacePoint {
         let Some(surface) = self.robot.links()[leaf.link].surface.as_ref() else { return leaf.place };
         let (mut place, reach) = (leaf.place, leaf.area.sqrt());
         for _ in 0..UPHILL {
             let Some(step) = self.step_from(leaf, &place, reach) else { break };
+            if !best && step.norm() > 0.5 * reach {
+                break;
+            }
             let tried = SHARES.map(|share| place.point + step * share);
             let (places, block) = projected(surface, tried, leaf.area, place.triangle);
             let logs = self.log_likelihood(leaf.link, &block)[usize::from(leaf.pulls)];
@@ -94,12 +112,22 @@ impl SurfacePosterior {
 
     /// The step to where the torques are likeliest, at most `reach` (m).
     fn step_from(&self, leaf: &Leaf, place: &SurfacePoint, reach: f64) -> Option<Vector3<f64>> {
+        self.normal_equations(leaf, place).displacement(reach).map(|step| step.cap_magnitude(reach))
+    }
+
+    /// Root mean square of a contact's distance from the place of a piece that it is on (m).
+    pub(super) fn spread(&self, leaf: usize) -> f64 {
+        let leaf = &self.leaves[leaf];
+        self.normal_equations(leaf, &leaf.place).spread(PIECE * leaf.area.sqrt())
+    }
+
+    fn normal_equations(&self, leaf: &Leaf, place: &SurfacePoint) -> PlaceStep {
         let mut step = PlaceStep::at(&place.point, &place.normal);
         let known = &self.measurements[..self.count];
         for measurement in known {
             measurement.add_to(&mut step, &self.prior, leaf.link, leaf.pulls, 1.0 / known.len() as f64);
         }
-        step.displacement(reach).map(|step| step.cap_magnitude(reach))
+        step
     }
 }
 
