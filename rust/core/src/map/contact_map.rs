@@ -103,9 +103,9 @@ impl ContactMap {
 
     /// By sample: its point in the world frame at the last evaluation (m), and the logarithm of its share of the posterior.
     pub fn log_posterior(&self) -> impl Iterator<Item = (Vector3<f64>, f64)> + '_ {
-        let log_weights = || self.log_weights().map(|(.., log)| log);
-        let greatest = log_weights().fold(f64::NEG_INFINITY, f64::max);
-        let total = greatest + log_weights().map(|log| (log - greatest).exp()).sum::<f64>().ln();
+        let greatest = self.log_weights().fold(f64::NEG_INFINITY, |most, (.., log)| most.max(log));
+        let shares = self.log_weights().map(|(.., log)| log - greatest).filter(|log| *log > NO_SHARE);
+        let total = greatest + shares.map(f64::exp).sum::<f64>().ln();
         self.log_weights().map(move |(link, point, log)| {
             let pose = &self.posterior.newest().frames().links[link].pose;
             (pose.transform_point(&point), log - total)
@@ -114,21 +114,26 @@ impl ContactMap {
 
     /// By sample: its link, its point in the link's frame, and the logarithm of its weight.
     fn log_weights(&self) -> impl Iterator<Item = (usize, Vector3<f64>, f64)> + '_ {
-        let SurfacePosterior { samples, log_push, log_pull, .. } = &self.posterior;
-        let mut entry = 0;
+        let SurfacePosterior { samples, found, .. } = &self.posterior;
         samples.links.iter().flat_map(move |link| {
-            let first = entry;
-            entry += link.blocks.len() * LANES;
-            let places = link.places.iter().zip(&link.areas).enumerate();
-            places.map(move |(k, (place, area))| {
-                (link.link, place.point, log_sum(log_push[first + k], log_pull[first + k]) + area.ln())
-            })
+            let logs = found[link.first..]
+                .iter()
+                .flat_map(|block| (0..LANES).map(|k| log_sum(block.log[0][k], block.log[1][k])));
+            let places = link.places.iter().zip(&link.log_areas);
+            places.zip(logs).map(|((place, log_area), log)| (link.link, place.point, log + log_area))
         })
     }
 }
 
+/// Shares of the posterior whose logarithm is less do not change a sum of numbers with 53 bits.
+const NO_SHARE: f64 = -45.0;
+
 /// `ln(exp(a) + exp(b))`.
 fn log_sum(a: f64, b: f64) -> f64 {
     let (low, high) = if a < b { (a, b) } else { (b, a) };
-    high + (low - high).exp().ln_1p()
+    if low - high > NO_SHARE {
+        high + (low - high).exp().ln_1p()
+    } else {
+        high
+    }
 }

@@ -16,7 +16,7 @@ pub(super) struct Leaf {
     pub pulls: bool,
     /// Logarithm of its share of the posterior, not normalised.
     pub log_weight: f64,
-    /// Into the surface, of the newest measurement (N); negative where it pulls.
+    /// Size of the normal force of the newest measurement (N).
     pub force: f64,
     /// Root mean square of the distance of the contact from the place, if it is on this piece (m).
     pub spread: f64,
@@ -25,12 +25,13 @@ pub(super) struct Leaf {
 impl ContactSamples for Vec<Leaf> {
     #[inline]
     fn sample(&self, k: usize) -> ContactSample {
-        let Leaf { link, place, force, .. } = &self[k];
+        let Leaf { link, place, force, pulls, .. } = &self[k];
+        let outward = if *pulls { *force } else { -force };
         ContactSample {
             link: *link,
             point: place.point,
             normal: place.normal,
-            force: place.normal * -force,
+            force: place.normal * outward,
             stiffness: 0.0,
         }
     }

@@ -79,6 +79,11 @@ impl Measurement {
         &self.stated
     }
 
+    /// Squared norm of the torques of the joints that move a link, in standard deviations.
+    pub fn felt(&self, link: usize) -> f64 {
+        self.target.on(link).torque.iter().map(|torque| torque * torque).sum()
+    }
+
     /// Logarithm of the likelihood without contact, but for a constant.
     pub fn without_contact(&self) -> f64 {
         -0.5 * self.target.squared - self.deviation.iter().map(|deviation| deviation.ln()).sum::<f64>()

@@ -14,7 +14,7 @@ use crate::error::Result;
 use crate::posterior::resampling::normalise;
 use crate::posterior::Clusters;
 use crate::robot::{Kinematics, Robot};
-use crate::torque::{ForcePrior, PlaceBlock, LANES};
+use crate::torque::{ForcePrior, PlaceBlock, PushLikelihood, LANES};
 
 /// More measurements of one contact than this are not kept.
 const MOST_MEASUREMENTS: usize = 4;
@@ -26,6 +26,8 @@ const MOST_LEVELS: usize = 12;
 /// Pieces with less than this share of the weightiest one's are not divided, and those with less than this are left out.
 const DIVIDED: f64 = 0.02;
 const KEPT: f64 = 1e-4;
+/// A contact whose log-likelihood is so much less than the greatest is impossible, however small its piece.
+const IMPOSSIBLE: f64 = 60.0;
 /// Pieces of surface are taken as flat: a contact of a force f on a piece of edge s, which is curved, errs by this times s f.
 const CURVED: f64 = 0.05;
 /// Errors of the torque by the size of pieces do not matter once they are less than this share of the noise.
@@ -36,17 +38,16 @@ const ENOUGH: f64 = 60.0;
 /// What the next step does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Stage {
-    /// Weighs samples from a block of a link on, whose entry in the columns this is.
+    /// Weighs samples of the link that is `rank`th in `likely`, from a block on.
     Samples {
-        link: usize,
+        rank: usize,
         block: usize,
-        entry: usize,
     },
     /// Divides the pieces in `order` from one on.
     Pieces {
         next: usize,
     },
-    Forces {
+    Spreads {
         next: usize,
     },
     Done,
@@ -61,9 +62,13 @@ pub(crate) struct SurfacePosterior {
     /// Newest last.
     measurements: Vec<Measurement>,
     count: usize,
-    /// By sample, padded to blocks: log-likelihoods of a contact that pushes and of one that pulls.
-    pub(super) log_push: Vec<f64>,
-    pub(super) log_pull: Vec<f64>,
+    /// What the measurements say of each block of samples.
+    pub(super) found: Vec<PushLikelihood>,
+    /// Links of the samples, those first whose joints feel most, and that half of the squared norm over its noise: no contact there
+    /// has a log-likelihood above it.
+    likely: Vec<(f64, usize)>,
+    /// Logarithm of the greatest likelihood of the samples so far.
+    greatest: f64,
     pub(super) leaves: Vec<Leaf>,
     log_weights: Vec<f64>,
     pub(super) weights: Vec<f64>,
@@ -85,14 +90,14 @@ impl SurfacePosterior {
     /// [`crate::Error::Input`] names the option.
     pub fn new(robot: Arc<Robot>, options: &MapOptions, wanted: &[usize]) -> Result<Self> {
         let samples = SurfaceSamples::new(&robot, wanted, options.samples)?;
-        let padded: usize = samples.links.iter().map(|link| link.blocks.len() * LANES).sum();
         let most = 2 * samples.count + MOST_LEVELS * 2 * MOST_DIVIDED * LANES;
         Ok(SurfacePosterior {
             prior: options.prior(),
             measurements: vec![Measurement::new(&robot, wanted.to_vec()); MOST_MEASUREMENTS],
             count: 0,
-            log_push: vec![0.0; padded],
-            log_pull: vec![0.0; padded],
+            found: vec![PushLikelihood::none(0.0); samples.links.iter().map(|link| link.blocks.len()).sum()],
+            likely: Vec::with_capacity(samples.links.len()),
+            greatest: f64::NEG_INFINITY,
             leaves: Vec::with_capacity(most),
             log_weights: Vec::with_capacity(most),
             weights: Vec::with_capacity(most),
@@ -152,15 +157,24 @@ impl SurfacePosterior {
         self.level = 0;
         let force = self.rough_force();
         self.blur(CURVED * self.edge * force);
-        self.stage = Stage::Samples { link: 0, block: 0, entry: 0 };
+        let Self { likely, samples, measurements, count, .. } = self;
+        let share = 0.5 / *count as f64;
+        likely.clear();
+        likely.extend(samples.links.iter().enumerate().map(|(k, link)| {
+            let felt = |measurement: &Measurement| measurement.felt(link.link);
+            (share * measurements[..*count].iter().map(felt).sum::<f64>(), k)
+        }));
+        likely.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
+        self.greatest = f64::NEG_INFINITY;
+        self.stage = Stage::Samples { rank: 0, block: 0 };
     }
 
     /// A part of the work; the posterior is complete where it returns true.
     pub fn step(&mut self) -> bool {
         self.stage = match self.stage {
-            Stage::Samples { link, block, entry } => self.weigh_samples(link, block, entry),
+            Stage::Samples { rank, block } => self.weigh_samples(rank, block),
             Stage::Pieces { next } => self.divide(next),
-            Stage::Forces { next } => self.find_forces(next),
+            Stage::Spreads { next } => self.find_spreads(next),
             Stage::Done => Stage::Done,
         };
         self.is_done()
@@ -174,9 +188,9 @@ impl SurfacePosterior {
             let Some(block) = samples.blocks.first() else { continue };
             let found = self.newest().likelihood(&self.prior, samples.link, block);
             for k in 0..LANES {
-                for (log, force) in [(found.log_push[k], found.push[k]), (found.log_pull[k], found.pull[k])] {
-                    if log > best.0 {
-                        best = (log, force);
+                for (log, force) in found.log.iter().zip(&found.force) {
+                    if log[k] > best.0 {
+                        best = (log[k], force[k]);
                     }
                 }
             }
@@ -188,19 +202,23 @@ impl SurfacePosterior {
         self.measurements[..self.count].iter_mut().for_each(|measurement| measurement.blur(error));
     }
 
-    /// Log-likelihoods of contacts that push and that pull: the mean over the measurements, which are correlated and together
-    /// count as one (algorithm D4).
+    /// What all measurements say of contacts on a block of pieces: the mean of the logarithms, since they are correlated and
+    /// together count as one (algorithm D4); the forces of the newest.
     #[inline]
-    fn log_likelihood(&self, link: usize, block: &PlaceBlock) -> [[f64; LANES]; 2] {
-        let mut logs = [[0.0; LANES]; 2];
-        let share = 1.0 / self.count as f64;
-        for measurement in &self.measurements[..self.count] {
+    fn likelihood(&self, link: usize, block: &PlaceBlock) -> PushLikelihood {
+        let (newest, others) = (self.newest(), &self.measurements[..self.count.saturating_sub(1)]);
+        let mut mean = newest.likelihood(&self.prior, link, block);
+        for measurement in others {
             let found = measurement.likelihood(&self.prior, link, block);
-            for (sum, found) in logs.iter_mut().zip([found.log_push, found.log_pull]) {
-                sum.iter_mut().zip(found).for_each(|(sum, log)| *sum += share * log);
+            for (sum, found) in mean.log.iter_mut().zip(found.log) {
+                sum.iter_mut().zip(found).for_each(|(sum, log)| *sum += log);
             }
         }
-        logs
+        if !others.is_empty() {
+            let share = 1.0 / self.count as f64;
+            mean.log.iter_mut().flatten().for_each(|log| *log *= share);
+        }
+        mean
     }
 
     /// Mean log-likelihood without contact, at the present weights.
@@ -209,20 +227,27 @@ impl SurfacePosterior {
         known.iter().map(Measurement::without_contact).sum::<f64>() / self.count.max(1) as f64
     }
 
-    fn weigh_samples(&mut self, mut link: usize, mut block: usize, mut entry: usize) -> Stage {
+    fn weigh_samples(&mut self, mut rank: usize, mut block: usize) -> Stage {
         let mut work = 0;
-        while let Some(samples) = self.samples.links.get(link) {
+        while let Some(&(bound, link)) = self.likely.get(rank) {
             if work >= STEP {
-                return Stage::Samples { link, block, entry };
+                return Stage::Samples { rank, block };
+            }
+            let samples = &self.samples.links[link];
+            let own = samples.first..samples.first + samples.blocks.len();
+            if block == 0 && bound < self.greatest - IMPOSSIBLE {
+                self.found[own].fill(PushLikelihood::none(bound));
+                rank += 1;
+                continue;
             }
             let Some(places) = samples.blocks.get(block) else {
-                (link, block) = (link + 1, 0);
+                (rank, block) = (rank + 1, 0);
                 continue;
             };
-            let [push, pull] = self.log_likelihood(samples.link, places);
-            self.log_push[entry..entry + LANES].copy_from_slice(&push);
-            self.log_pull[entry..entry + LANES].copy_from_slice(&pull);
-            (block, entry, work) = (block + 1, entry + LANES, work + self.count);
+            let found = self.likelihood(samples.link, places);
+            self.found[own.start + block] = found;
+            self.greatest = found.log.iter().flatten().copied().fold(self.greatest, f64::max);
+            (block, work) = (block + 1, work + self.count);
         }
         self.take_samples();
         self.next_level()
@@ -232,31 +257,27 @@ impl SurfacePosterior {
     /// coarse, and which link it is may only show on smaller pieces.
     fn take_samples(&mut self) {
         self.leaves.clear();
-        let greatest = self.log_push.iter().chain(&self.log_pull).copied().fold(f64::NEG_INFINITY, f64::max);
         let without = self.without_contact();
-        let mut entry = 0;
         for samples in &self.samples.links {
+            let found = &self.found[samples.first..samples.first + samples.blocks.len()];
             let count = samples.places.len();
-            for (logs, pulls) in [(&self.log_push, false), (&self.log_pull, true)] {
-                let own = &logs[entry..entry + count];
-                let floor = own.iter().copied().fold(f64::NEG_INFINITY, f64::max).min(greatest + KEPT.ln());
-                for (k, (place, &area)) in samples.places.iter().zip(&samples.areas).enumerate() {
-                    if own[k] >= floor {
-                        let log_weight = own[k] + without + area.ln();
-                        let place = *place;
-                        self.leaves.push(Leaf {
-                            link: samples.link,
-                            place,
-                            area,
-                            pulls,
-                            log_weight,
-                            force: 0.0,
-                            spread: 0.0,
-                        });
+            for side in 0..2 {
+                let logs = || found.iter().flat_map(|block| block.log[side]).take(count);
+                let forces = found.iter().flat_map(|block| block.force[side]);
+                let best = logs().fold(f64::NEG_INFINITY, f64::max);
+                if best < self.greatest - IMPOSSIBLE {
+                    continue;
+                }
+                let floor = best.min(self.greatest + KEPT.ln());
+                let places = samples.places.iter().zip(&samples.areas);
+                for ((log, force), (&place, &area)) in logs().zip(forces).zip(places) {
+                    if log >= floor {
+                        let log_weight = log + without + area.ln();
+                        let (link, pulls) = (samples.link, side == 1);
+                        self.leaves.push(Leaf { link, place, area, pulls, log_weight, force, spread: 0.0 });
                     }
                 }
             }
-            entry += samples.blocks.len() * LANES;
         }
     }
 
@@ -265,7 +286,7 @@ impl SurfacePosterior {
         self.weigh_leaves();
         let best = (0..self.leaves.len()).max_by(|&a, &b| self.weights[a].total_cmp(&self.weights[b]));
         let Some(best) = best.filter(|_| self.level < MOST_LEVELS) else { return self.finish() };
-        let force = self.force_at(best);
+        let force = self.leaves[best].force;
         let newest = self.newest().stated().iter().copied();
         let noise = newest.fold(f64::INFINITY, f64::min);
         if self.effective > ENOUGH || CURVED * self.edge * force < FINE * noise {
@@ -287,24 +308,20 @@ impl SurfacePosterior {
         (self.effective, self.log_pieces) = (weighed.effective, weighed.log_sum);
     }
 
-    /// Weights and noise are final; the forces are not known yet.
+    /// Weights and noise are final; how far a contact is from the middle of its piece is not known yet.
     fn finish(&mut self) -> Stage {
         self.blur(0.0);
-        Stage::Forces { next: 0 }
+        Stage::Spreads { next: 0 }
     }
 
-    fn find_forces(&mut self, mut next: usize) -> Stage {
+    fn find_spreads(&mut self, mut next: usize) -> Stage {
         let mut work = 0;
         while next < self.leaves.len() {
             if work >= STEP {
-                return Stage::Forces { next };
+                return Stage::Spreads { next };
             }
             if self.weights[next] > KEPT {
-                let force = self.force_at(next);
-                let spread = self.spread(next);
-                let leaf = &mut self.leaves[next];
-                leaf.spread = spread;
-                leaf.force = if leaf.pulls { -force } else { force };
+                self.leaves[next].spread = self.spread(next);
                 work += 1;
             }
             next += 1;
@@ -312,17 +329,5 @@ impl SurfacePosterior {
         let frames = self.measurements[self.count - 1].frames();
         self.clusters.find(&self.robot, frames, &self.leaves, &self.weights);
         Stage::Done
-    }
-
-    /// Size of the normal force at a piece by the newest measurement (N).
-    fn force_at(&self, leaf: usize) -> f64 {
-        let Leaf { link, place, pulls, area, .. } = &self.leaves[leaf];
-        let block = PlaceBlock::new(&[(place.point, place.normal, *area); LANES]);
-        let found = self.newest().likelihood(&self.prior, *link, &block);
-        if *pulls {
-            found.pull[0]
-        } else {
-            found.push[0]
-        }
     }
 }

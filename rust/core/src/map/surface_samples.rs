@@ -17,8 +17,12 @@ pub(super) struct LinkSamples {
     pub places: Vec<SurfacePoint>,
     /// Area that each stands for (m^2).
     pub areas: Vec<f64>,
+    /// Logarithms of these.
+    pub log_areas: Vec<f64>,
     /// The same places, the last one repeated to fill a block.
     pub blocks: Vec<PlaceBlock>,
+    /// Blocks of all links before it.
+    pub first: usize,
 }
 
 /// The samples of a robot.
@@ -47,7 +51,8 @@ impl SurfaceSamples {
             let own = ((area.sqrt() / roots * count as f64).round() as usize).max(1);
             let drawn = surface(link).map_or(vec![], |surface| surface.sample(own * DRAWN, SEED));
             if !drawn.is_empty() {
-                links.push(LinkSamples::spread(link, &drawn, own, area));
+                let first = links.last().map_or(0, |last: &LinkSamples| last.first + last.blocks.len());
+                links.push(LinkSamples { first, ..LinkSamples::spread(link, &drawn, own, area) });
             }
         }
         if links.is_empty() {
@@ -95,7 +100,8 @@ impl LinkSamples {
             .zip(areas.chunks(LANES))
             .map(|(places, areas)| block(places, areas))
             .collect();
-        LinkSamples { link, places, areas, blocks }
+        let log_areas = areas.iter().map(|area| area.ln()).collect();
+        LinkSamples { link, places, areas, log_areas, blocks, first: 0 }
     }
 }
 

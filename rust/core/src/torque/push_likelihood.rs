@@ -72,15 +72,20 @@ impl ForcePrior {
     }
 }
 
-/// What a torque says of contacts at some points.
+/// What a torque says of contacts on some pieces: of one that pushes there, and of one that pulls.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PushLikelihood {
-    /// Logarithm of the likelihood with a contact there that pushes, over that without contact; and with one that pulls.
-    pub log_push: [f64; LANES],
-    pub log_pull: [f64; LANES],
-    /// Force into the surface and out of it that explains the torque best (N).
-    pub push: [f64; LANES],
-    pub pull: [f64; LANES],
+    /// Logarithm of the likelihood with a contact there, over that without contact.
+    pub log: [[f64; LANES]; 2],
+    /// Size of the normal force that explains the torque best (N).
+    pub force: [[f64; LANES]; 2],
+}
+
+impl PushLikelihood {
+    /// The same logarithm everywhere, and no force.
+    pub fn none(log: f64) -> Self {
+        PushLikelihood { log: [[log; LANES]; 2], force: [[0.0; LANES]; 2] }
+    }
 }
 
 #[inline]
@@ -182,10 +187,8 @@ impl ForcePrior {
         let force = found.shown / found.left;
         let (push, pull) = (self.bound(force), self.bound(-force));
         PushLikelihood {
-            log_push: side(push, 1.0, self.log_push).to_array(),
-            log_pull: side(pull, -1.0, self.log_pull).to_array(),
-            push: push.to_array(),
-            pull: pull.to_array(),
+            log: [side(push, 1.0, self.log_push).to_array(), side(pull, -1.0, self.log_pull).to_array()],
+            force: [push.to_array(), pull.to_array()],
         }
     }
 

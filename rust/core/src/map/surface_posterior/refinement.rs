@@ -65,18 +65,21 @@ impl SurfacePosterior {
             }
             (next, work) = (next + 1, work + self.count + PROJECTION);
             let mut leaf = self.leaves[index as usize];
-            // The best one of a side may have its best point beyond it; the others have neighbours there.
             let best = self.sides[2 * leaf.link + usize::from(leaf.pulls)].contains(&Some(index as usize));
-            leaf.place = self.uphill(&leaf, best);
-            work += PROJECTION;
+            if best {
+                leaf.place = self.uphill(&leaf);
+                work += PROJECTION;
+            }
             let Some(surface) = self.robot.links()[leaf.link].surface.as_ref() else { continue };
             let area = 0.25 * leaf.area;
             let (places, block) = projected(surface, leaf.quarters(), area, leaf.place.triangle);
-            let logs = self.log_likelihood(leaf.link, &block)[usize::from(leaf.pulls)];
-            for (k, (place, log)) in places.into_iter().zip(logs).enumerate() {
+            let found = self.likelihood(leaf.link, &block);
+            let side = usize::from(leaf.pulls);
+            let parts = places.into_iter().zip(found.log[side]).zip(found.force[side]);
+            for (k, ((place, log), force)) in parts.enumerate() {
                 let hidden = surface.hides(&place.point, place.triangle);
                 let log_weight = if hidden { f64::NEG_INFINITY } else { log + without + area.ln() };
-                let part = Leaf { place, area, log_weight, ..leaf };
+                let part = Leaf { place, area, log_weight, force, ..leaf };
                 if k == 0 {
                     self.leaves[index as usize] = part;
                 } else {
@@ -89,17 +92,14 @@ impl SurfacePosterior {
 
     /// The place of a piece, moved on the surface to where the torques are likelier by up to its own size: pieces do not cover
     /// the surface exactly, and the best point may lie between them.
-    fn uphill(&self, leaf: &Leaf, best: bool) -> SurfacePoint {
+    fn uphill(&self, leaf: &Leaf) -> SurfacePoint {
         let Some(surface) = self.robot.links()[leaf.link].surface.as_ref() else { return leaf.place };
         let (mut place, reach) = (leaf.place, leaf.area.sqrt());
         for _ in 0..UPHILL {
             let Some(step) = self.step_from(leaf, &place, reach) else { break };
-            if !best && step.norm() > 0.5 * reach {
-                break;
-            }
             let tried = SHARES.map(|share| place.point + step * share);
             let (places, block) = projected(surface, tried, leaf.area, place.triangle);
-            let logs = self.log_likelihood(leaf.link, &block)[usize::from(leaf.pulls)];
+            let logs = self.likelihood(leaf.link, &block).log[usize::from(leaf.pulls)];
             // The last share is none.
             let best = (0..LANES).fold(LANES - 1, |best, k| if logs[k] > logs[best] { k } else { best });
             if best == LANES - 1 || surface.hides(&places[best].point, places[best].triangle) {
