@@ -10,7 +10,8 @@ use super::summary::Summary;
 use super::surface_posterior::SurfacePosterior;
 use crate::error::Result;
 use crate::robot::{Kinematics, Robot};
-use crate::torque::{TorqueNoise, LANES};
+use crate::surface::SurfacePoint;
+use crate::torque::{PushLikelihood, TorqueNoise, LANES};
 
 /// Says where on a robot a contact is, and how certain that is: the posterior over samples of all surface.
 ///
@@ -103,24 +104,31 @@ impl ContactMap {
 
     /// By sample: its point in the world frame at the last evaluation (m), and the logarithm of its share of the posterior.
     pub fn log_posterior(&self) -> impl Iterator<Item = (Vector3<f64>, f64)> + '_ {
-        let greatest = self.log_weights().fold(f64::NEG_INFINITY, |most, (.., log)| most.max(log));
-        let shares = self.log_weights().map(|(.., log)| log - greatest).filter(|log| *log > NO_SHARE);
+        let logs: Vec<f64> = self.log_weights().collect();
+        let greatest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let shares = logs.iter().map(|log| log - greatest).filter(|log| *log > NO_SHARE);
         let total = greatest + shares.map(f64::exp).sum::<f64>().ln();
-        self.log_weights().map(move |(link, point, log)| {
+        self.places().zip(logs).map(move |((link, place), log)| {
             let pose = &self.posterior.newest().frames().links[link].pose;
-            (pose.transform_point(&point), log - total)
+            (pose.transform_point(&place.point), log - total)
         })
     }
 
-    /// By sample: its link, its point in the link's frame, and the logarithm of its weight.
-    fn log_weights(&self) -> impl Iterator<Item = (usize, Vector3<f64>, f64)> + '_ {
+    /// By sample: its link, and its place in the link's frame.
+    fn places(&self) -> impl Iterator<Item = (usize, &SurfacePoint)> + '_ {
+        let links = self.posterior.samples.links.iter();
+        links.flat_map(|link| link.places.iter().map(|place| (link.link, place)))
+    }
+
+    /// By sample: the logarithm of its weight.
+    fn log_weights(&self) -> impl Iterator<Item = f64> + '_ {
         let SurfacePosterior { samples, found, .. } = &self.posterior;
         samples.links.iter().flat_map(move |link| {
-            let logs = found[link.first..]
-                .iter()
-                .flat_map(|block| (0..LANES).map(|k| log_sum(block.log[0][k], block.log[1][k])));
-            let places = link.places.iter().zip(&link.log_areas);
-            places.zip(logs).map(|((place, log_area), log)| (link.link, place.point, log + log_area))
+            let sides = |block: &PushLikelihood| {
+                std::array::from_fn::<_, LANES, _>(|k| log_sum(block.log[0][k], block.log[1][k]))
+            };
+            let logs = found[link.first..].iter().flat_map(sides);
+            link.log_areas.iter().zip(logs).map(|(log_area, log)| log + log_area)
         })
     }
 }

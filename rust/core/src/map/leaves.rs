@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use crate::posterior::{ContactSample, ContactSamples};
 use crate::surface::SurfacePoint;
+use crate::torque::PIECE;
 
 /// A piece of a link's surface with a contact that pushes or pulls there.
 #[derive(Debug, Clone, Copy)]
@@ -38,6 +39,11 @@ impl ContactSamples for Vec<Leaf> {
 }
 
 impl Leaf {
+    /// Root mean square of the distance from the middle of a piece of an area (m^2), by the prior.
+    pub fn width(area: f64) -> f64 {
+        std::f64::consts::SQRT_2 * PIECE * area.sqrt()
+    }
+
     /// Middles of its four parts, in the plane of the surface.
     pub fn quarters(&self) -> [Vector3<f64>; 4] {
         let first = crate::spatial::basis::across(&self.place.normal);

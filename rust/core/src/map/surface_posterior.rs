@@ -26,6 +26,8 @@ const MOST_LEVELS: usize = 12;
 /// Pieces with less than this share of the weightiest one's are not divided, and those with less than this are left out.
 const DIVIDED: f64 = 0.02;
 const KEPT: f64 = 1e-4;
+/// Share of the posterior that a region does not show.
+const SEEN: f64 = 1e-3;
 /// A contact whose log-likelihood is so much less than the greatest is impossible, however small its piece.
 const IMPOSSIBLE: f64 = 60.0;
 /// Pieces of surface are taken as flat: a contact of a force f on a piece of edge s, which is curved, errs by this times s f.
@@ -274,7 +276,15 @@ impl SurfacePosterior {
                     if log >= floor {
                         let log_weight = log + without + area.ln();
                         let (link, pulls) = (samples.link, side == 1);
-                        self.leaves.push(Leaf { link, place, area, pulls, log_weight, force, spread: 0.0 });
+                        self.leaves.push(Leaf {
+                            link,
+                            place,
+                            area,
+                            pulls,
+                            log_weight,
+                            force,
+                            spread: Leaf::width(area),
+                        });
                     }
                 }
             }
@@ -320,7 +330,8 @@ impl SurfacePosterior {
             if work >= STEP {
                 return Stage::Spreads { next };
             }
-            if self.weights[next] > KEPT {
+            // Where there are many, the distance between them counts.
+            if self.effective < ENOUGH && self.weights[next] > SEEN {
                 self.leaves[next].spread = self.spread(next);
                 work += 1;
             }

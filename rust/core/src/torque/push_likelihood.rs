@@ -12,7 +12,7 @@ use super::place_step::PlaceStep;
 /// Points that are worked on at once.
 pub(crate) const LANES: usize = 4;
 /// The standard deviation of the force across the normal depends on the normal force: so often it is set by the force found.
-const PASSES: usize = 3;
+const PASSES: usize = 2;
 /// A point that no torque shows has a gain of zero, by which nothing is divided.
 const LEAST_GAIN: f64 = 1e-30;
 /// Precision of the force across the normal where there is no friction (1/N^2).
@@ -199,7 +199,7 @@ impl ForcePrior {
 
     /// The likeliest force along the inward normal, and across it: its standard deviation there follows from the normal force,
     /// which is `rough` to begin with (N).
-    #[inline]
+    #[inline(always)]
     fn best_force(&self, forces: &Forces, rough: f64x4) -> Best {
         let Forces { gram, product: [along, beside_1, beside_2] } = *forces;
         let tiny = f64x4::splat(LEAST_GAIN);

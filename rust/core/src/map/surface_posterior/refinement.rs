@@ -79,7 +79,7 @@ impl SurfacePosterior {
             for (k, ((place, log), force)) in parts.enumerate() {
                 let hidden = surface.hides(&place.point, place.triangle);
                 let log_weight = if hidden { f64::NEG_INFINITY } else { log + without + area.ln() };
-                let part = Leaf { place, area, log_weight, force, ..leaf };
+                let part = Leaf { place, area, log_weight, force, spread: Leaf::width(area), ..leaf };
                 if k == 0 {
                     self.leaves[index as usize] = part;
                 } else {
