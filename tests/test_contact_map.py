@@ -128,9 +128,6 @@ def test_torques_with_little_noise_give_the_link_and_the_point(link: str) -> Non
     assert share_found(noise, link, 60) >= 0.93
 
 
-@pytest.mark.xfail(
-    strict=True, reason="a mode is lost where the posterior is far narrower than the samples are apart"
-)
 @pytest.mark.parametrize("link", ["iiwa_link_5", "iiwa_link_6", "iiwa_link_7"])
 def test_ideal_torques_give_the_link_and_the_point(link: str) -> None:
     assert share_found(IDEAL, link, 60) >= 0.98

@@ -276,3 +276,92 @@ fn times(matrix: &Matrix3<f64>, vector: &Lanes3) -> Lanes3 {
         vector[0] * matrix[(row, 0)] + vector[1] * matrix[(row, 1)] + vector[2] * matrix[(row, 2)]
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::{Kinematics, Robot};
+    use crate::torque::{Frames, PlaceStep, Target};
+
+    const LINK: usize = 6;
+    const Q: [f64; 7] = [0.3, 0.8, -0.4, 0.9, 0.5, 0.7, 0.0];
+    const DEVIATION: [f64; 7] = [0.05; 7];
+    const PRIOR: [f64; 2] = [2.0, 300.0];
+
+    fn measured(force: &Vector3<f64>, point: &Vector3<f64>) -> (Frames, Target) {
+        let robot = Robot::example_arm();
+        let mut kinematics = Kinematics::new(&robot);
+        kinematics.set_configuration(&robot, &Q);
+        let mut frames = Frames::new(&robot, vec![LINK]);
+        frames.update(&robot, &kinematics, &DEVIATION);
+        let mut torque = [0.0; 7];
+        frames.subtract(LINK, point, &-force, &DEVIATION, &mut torque);
+        // Errors of about one standard deviation.
+        torque.iter_mut().enumerate().for_each(|(k, torque)| *torque += 0.05 * (1.7 * k as f64).sin());
+        let mut target = Target::new(&frames);
+        target.set(&frames, &torque, &DEVIATION);
+        (frames, target)
+    }
+
+    /// A flat piece of surface, its outward normal, and a point off its middle where the contact is.
+    fn piece() -> (Vector3<f64>, Vector3<f64>, Vector3<f64>) {
+        let (middle, normal) = (Vector3::new(0.05, 0.01, 0.1), Vector3::new(1.0, 0.2, -0.1).normalize());
+        let [_, first, second] = directions(&normal);
+        (middle, normal, middle + first * 0.006 - second * 0.004)
+    }
+
+    #[test]
+    fn a_piece_is_as_likely_as_the_points_on_it_together() {
+        let (middle, normal, contact) = piece();
+        let (frames, target) = measured(&(normal * -20.0 + directions(&normal)[1] * 3.0), &contact);
+        let prior = ForcePrior::new(0.5, PRIOR, 0.05);
+        let of = |point: Vector3<f64>, area: f64| {
+            let block = PlaceBlock::new(&[(point, normal, area); LANES]);
+            prior.likelihood(&frames.links[LINK], target.on(LINK), &block)
+        };
+        for edge in [0.005, 0.02, 0.04] {
+            let found = of(middle, edge * edge);
+            // Points on a grid, weighed as the piece's normal distribution.
+            let [_, first, second] = directions(&normal);
+            let (steps, reach) = (60, 4.0);
+            let offset = |k: i32| reach * f64::from(2 * k - steps) / f64::from(steps);
+            let (mut sum, mut total) = (0.0, 0.0);
+            for (i, j) in (0..=steps).flat_map(|i| (0..=steps).map(move |j| (i, j))) {
+                let (a, b) = (offset(i), offset(j));
+                let weight = (-0.5 * (a * a + b * b)).exp();
+                let point = middle + (first * a + second * b) * (PIECE * edge);
+                sum += weight * (of(point, 0.0).log[0][0] - found.log[0][0]).exp();
+                total += weight;
+            }
+            let error = (sum / total).ln();
+            assert!(error.abs() < 0.15, "edge {edge}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_step_leads_to_where_the_torques_are_likeliest() {
+        let (middle, normal, contact) = piece();
+        let (frames, target) = measured(&(normal * -20.0), &contact);
+        let prior = ForcePrior::new(0.5, PRIOR, 0.05);
+        let at = |point: &Vector3<f64>| {
+            let block = PlaceBlock::new(&[(*point, normal, 0.0); LANES]);
+            prior.likelihood(&frames.links[LINK], target.on(LINK), &block).log[0][0]
+        };
+        let mut point = middle;
+        for _ in 0..3 {
+            let mut step = PlaceStep::at(&point, &normal);
+            prior.add_to(&mut step, &frames.links[LINK], target.on(LINK), false, 1.0);
+            point += step.displacement(1.0).expect("a number");
+        }
+        let [_, first, second] = directions(&normal);
+        assert!(at(&point) > at(&middle));
+        for aside in [first, -first, second, -second] {
+            assert!(at(&point) > at(&(point + aside * 0.01)));
+        }
+        // Nothing pulls there.
+        let mut step = PlaceStep::at(&point, &normal);
+        prior.add_to(&mut step, &frames.links[LINK], target.on(LINK), true, 1.0);
+        assert_eq!(step.displacement(1.0), Some(Vector3::zeros()));
+        assert!((step.spread(0.01) - 0.01 * 2f64.sqrt()).abs() < 1e-12);
+    }
+}
