@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::robot::{Kinematics, Robot};
-use crate::torque::{ForcePrior, Frames, PlaceBlock, PlaceStep, PushLikelihood, Target};
+use crate::torque::{ForcePrior, Frames, PlaceBlock, PushLikelihood, Target};
 
 /// A torque at a pose.
 #[derive(Debug, Clone)]
@@ -105,11 +105,6 @@ impl Measurement {
     /// The torques as they are weighed.
     pub fn target(&self) -> &Target {
         &self.target
-    }
-
-    /// Takes what it says of how far a contact on a link moves into `step`, as `share` of a measurement.
-    pub fn add_to(&self, step: &mut PlaceStep, prior: &ForcePrior, link: usize, pulls: bool, share: f64) {
-        prior.add_to(step, &self.frames.links[link], self.target.on(link), pulls, share);
     }
 
     /// What it says of contacts at a block of points on a link, relative to no contact.

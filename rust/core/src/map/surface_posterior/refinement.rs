@@ -125,7 +125,9 @@ impl SurfacePosterior {
         let mut step = PlaceStep::at(&place.point, &place.normal);
         let known = &self.measurements[..self.count];
         for measurement in known {
-            measurement.add_to(&mut step, &self.prior, leaf.link, leaf.pulls, 1.0 / known.len() as f64);
+            let (frames, target) = (measurement.frames(), measurement.target());
+            let (frame, target) = (&frames.links[leaf.link], target.on(leaf.link));
+            self.prior.add_to(&mut step, frame, target, leaf.pulls, 1.0 / known.len() as f64);
         }
         step
     }
