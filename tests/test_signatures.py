@@ -46,7 +46,8 @@ SIGNATURES = {
     "Finding.to_dict": "",
     "ContactIsolator": "robot, *, sensors=(), torque_threshold=1e-3, wrench_threshold=1e-3, "
     "wanted_contacts=(), "
-    "max_contacts=5, pushing=True, noise=None, locate_within=0.05, calibration=None",
+    "max_contacts=5, pushing=True, noise=None, locate_within=0.05, calibration=None, "
+    "samples=1000, pull_probability=0.05",
     "ContactIsolator.isolate": "q, tau_ext, wrenches=None",
     "ContactMonitor": "robot, *, dt, sensors=(), wanted_contacts=(), observer_gain=50.0, "
     "torque_threshold=0.5, "

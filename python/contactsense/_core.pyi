@@ -1320,6 +1320,8 @@ class ContactIsolator:
         noise: NoiseModel | None = None,
         locate_within: float = 0.05,
         calibration: Calibration | None = None,
+        samples: int = 1000,
+        pull_probability: float = 0.05,
     ) -> Self: ...
     @property
     def robot(self) -> Robot:

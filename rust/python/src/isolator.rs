@@ -45,6 +45,9 @@ pub fn contact_count(object: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
 ///     locate_within: A contact is located if 90 % of the places that explain the torques are within this distance of
 ///         its point [m].
 ///     calibration: A `Calibration` of this robot, whose noise takes the place of `noise`.
+///     samples: Samples of the surface from which the posterior of a single contact is worked out, as `ContactMap` does, where closed
+///         forms do not explain the torques exactly; 0 for closed forms only. Not with sensors, pulls or a floating base.
+///     pull_probability: Probability that a contact pulls on the surface, for this posterior.
 ///
 /// Raises:
 ///     InputError: Names the argument.
@@ -83,9 +86,11 @@ struct State {
 impl PyContactIsolator {
     #[new]
     #[pyo3(signature = (robot, *, sensors=None, torque_threshold=None, wrench_threshold=None, wanted_contacts=None,
-                        max_contacts=None, pushing=true, noise=None, locate_within=None, calibration=None),
+                        max_contacts=None, pushing=true, noise=None, locate_within=None, calibration=None,
+                        samples=None, pull_probability=None),
            text_signature = "(robot, *, sensors=(), torque_threshold=1e-3, wrench_threshold=1e-3, wanted_contacts=(), \
-                             max_contacts=5, pushing=True, noise=None, locate_within=0.05, calibration=None)")]
+                             max_contacts=5, pushing=True, noise=None, locate_within=0.05, calibration=None, samples=1000, \
+                             pull_probability=0.05)")]
     #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
         #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
@@ -98,11 +103,19 @@ impl PyContactIsolator {
         noise: Option<&Bound<'_, PyAny>>,
         locate_within: Option<Number<'_, '_>>,
         calibration: Option<&Bound<'_, PyAny>>,
+        samples: Option<&Bound<'_, PyAny>>,
+        pull_probability: Option<Number<'_, '_>>,
     ) -> PyResult<Self> {
         let mut options =
             IsolatorOptions { max_contacts: contact_count(max_contacts)?, pushing, ..Default::default() };
         if let Some(distance) = locate_within {
             options.locate_within = distance.named("locate_within")?;
+        }
+        if let Some(samples) = samples {
+            options.samples = whole("samples", samples, 1_000_000)? as usize;
+        }
+        if let Some(probability) = pull_probability {
+            options.pull_probability = probability.named("pull_probability")?;
         }
         if let Some(sensors) = sensors {
             options.sensors = self::sensors(sensors)?;

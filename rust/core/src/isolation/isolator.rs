@@ -12,6 +12,7 @@ use super::region::{Region, Regions};
 use super::result::{Candidate, Isolation, CANDIDATES};
 use super::rows::{Root, TorqueRows};
 use super::several::SeveralContacts;
+use super::surface_contact::{SurfaceContact, TorqueNow};
 use super::tips::TipSearch;
 use super::wrench::WrenchEstimate;
 use super::wrench_rows::WrenchRows;
@@ -88,6 +89,7 @@ pub struct ContactIsolator {
     pub(super) line: LineCast,
     rows: TorqueRows,
     pub(super) several: SeveralContacts,
+    surface: Option<SurfaceContact>,
     pub(super) near: Vec<LinkIndex>,
     /// By body: cannot carry the contact that is being judged.
     pub(super) excluded: Vec<bool>,
@@ -135,17 +137,18 @@ impl ContactIsolator {
             measured: vec![0.0; nv],
             limit: noise.threshold(),
             threshold,
-            noise,
             tips: TipSearch::new(&robot),
             bodies: BodySet::new(&robot),
             line: LineCast::new(),
             rows: TorqueRows::new(&robot),
             several: SeveralContacts::new(&robot, max_contacts),
+            surface: options.surface(&robot, &noise)?,
             near: Vec::with_capacity(links),
             excluded: vec![false; robot.body_count()],
             displaced: Vec::with_capacity(CANDIDATES),
             unexplained: vec![0.0; nv],
             isolation: Isolation::with_room(max_contacts, links),
+            noise,
             robot,
         })
     }
@@ -178,6 +181,11 @@ impl ContactIsolator {
         let mut kinematics = std::mem::replace(&mut self.kinematics, Kinematics::empty());
         kinematics.set_configuration(&self.robot, q);
         self.isolate_at(&kinematics, tau_ext, wrenches, None);
+        if let Some(surface) = &mut self.surface {
+            let deviation = self.noise.at_rest();
+            let now = TorqueNow { kinematics: &kinematics, torque: tau_ext, deviation };
+            surface.judge(&now, &mut self.isolation);
+        }
         self.kinematics = kinematics;
         Ok(&self.isolation)
     }

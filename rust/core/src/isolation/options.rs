@@ -1,7 +1,11 @@
 //! Options of the isolator.
 
+use std::sync::Arc;
+
+use super::surface_contact::SurfaceContact;
 use crate::detection::check_threshold;
 use crate::error::{Error, Result};
+use crate::map::MapOptions;
 use crate::robot::Robot;
 use crate::sensor::ForceTorqueSensor;
 use crate::torque::{NoiseModel, TorqueNoise, LEVEL};
@@ -47,6 +51,26 @@ pub struct IsolatorOptions {
     pub wanted_contacts: Vec<String>,
     /// A contact is located if 90 % of the places that explain the torques are within this distance of its point (m).
     pub locate_within: f64,
+    /// Samples of the surface by which a single contact of an arm without sensors is judged, where closed forms are not exact; zero
+    /// for closed forms only.
+    #[cfg_attr(feature = "serde", serde(default = "samples"))]
+    pub samples: usize,
+    /// Probability that a contact pulls on the surface.
+    #[cfg_attr(feature = "serde", serde(default = "pull_probability"))]
+    pub pull_probability: f64,
+}
+
+/// Enough for centimetres on an arm: pieces that matter are divided.
+const SAMPLES: usize = 1000;
+
+#[cfg(feature = "serde")]
+fn samples() -> usize {
+    SAMPLES
+}
+
+#[cfg(feature = "serde")]
+fn pull_probability() -> f64 {
+    MapOptions::default().pull_probability
 }
 
 impl Default for IsolatorOptions {
@@ -60,6 +84,8 @@ impl Default for IsolatorOptions {
             wrench_threshold: vec![1e-3],
             wanted_contacts: vec![],
             locate_within: LOCATE_WITHIN,
+            samples: SAMPLES,
+            pull_probability: MapOptions::default().pull_probability,
         }
     }
 }
@@ -83,6 +109,20 @@ impl IsolatorOptions {
             (None, None) => NoiseModel::default().of(robot)?,
         };
         Ok((given.unwrap_or_else(|| noise.threshold()), noise))
+    }
+
+    /// What judges a contact by all surface; none where closed forms answer alone.
+    ///
+    /// # Errors
+    /// [`Error::Input`] names the option.
+    pub(super) fn surface(&self, robot: &Arc<Robot>, noise: &TorqueNoise) -> Result<Option<SurfaceContact>> {
+        let Self { samples, pull_probability, .. } = *self;
+        let alone = self.sensors.is_empty() && self.pushing && !robot.floating_base();
+        if samples == 0 || !alone || !robot.has_contact_links() {
+            return Ok(None);
+        }
+        let options = MapOptions { samples, pull_probability, ..MapOptions::default() };
+        SurfaceContact::new(Arc::clone(robot), &options, noise.clone(), self.locate_within).map(Some)
     }
 
     /// # Errors

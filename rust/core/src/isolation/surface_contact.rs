@@ -59,10 +59,14 @@ pub(crate) struct SurfaceContact {
 impl SurfaceContact {
     /// # Errors
     /// [`crate::Error::Input`] names the option.
-    pub fn new(robot: Arc<Robot>, samples: usize, noise: TorqueNoise, locate_within: f64) -> Result<Self> {
-        let options = MapOptions { samples, ..MapOptions::default() };
+    pub fn new(
+        robot: Arc<Robot>,
+        options: &MapOptions,
+        noise: TorqueNoise,
+        locate_within: f64,
+    ) -> Result<Self> {
         let wanted = options.check(&robot)?;
-        let posterior = SurfacePosterior::new(robot.clone(), &options, &wanted)?;
+        let posterior = SurfacePosterior::new(robot.clone(), options, &wanted)?;
         Ok(SurfaceContact {
             summary: Summary::new(&robot, wanted.len(), options.friction, &posterior),
             links: wanted.iter().copied().map(LinkIndex::new).collect(),
@@ -146,6 +150,33 @@ impl SurfaceContact {
         noise.set_deviations_beside(now.deviation, now.torque, in_contact);
         own.set_on(link.get(), robot, now.kinematics, now.torque, in_contact);
         own.left_over(link.get(), point, force, left)
+    }
+
+    /// Judges what closed forms found of a torque: the point of a contact that they do not determine stays open unless the posterior is
+    /// sure of it.
+    pub fn judge(&mut self, now: &TorqueNow<'_>, isolation: &mut Isolation) {
+        let exact = |contact: &Contact| contact.verified;
+        if isolation.contacts.iter().all(exact) && is_exact(isolation.residual, now.torque) {
+            return;
+        }
+        self.forget();
+        self.measure(now);
+        while !self.is_done() {
+            self.step();
+        }
+        let found = match &isolation.contacts[..] {
+            [] => return,
+            [found] if !found.located => Some(found.clone()),
+            _ => None,
+        };
+        self.answer(now, false, isolation);
+        let Isolation { contacts, .. } = isolation;
+        if let (Some(found), [contact]) = (found, &mut contacts[..]) {
+            if !contact.located {
+                let link = if found.wrench.is_some() { found.link } else { contact.link };
+                *contact = Contact { link, posterior: contact.posterior.take(), ..found };
+            }
+        }
     }
 
     /// Puts the posterior's answer in place of what closed forms found, where one contact explains the torques. `outdated`: the

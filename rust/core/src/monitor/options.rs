@@ -92,6 +92,8 @@ impl MonitorOptions {
             isolation: IsolatorOptions {
                 torque_threshold: Some(vec![0.5]),
                 wrench_threshold: vec![2.0],
+                // The monitor follows contacts by samples of its own.
+                samples: 0,
                 ..IsolatorOptions::default()
             },
             wanted_points: vec![],

@@ -6,6 +6,7 @@ use super::evidence::TickEvidence;
 use super::identities::Identities;
 use crate::error::Result;
 use crate::isolation::{Isolation, SurfaceContact, TorqueNow};
+use crate::map::MapOptions;
 use crate::robot::Robot;
 use crate::torque::TorqueNoise;
 
@@ -41,10 +42,11 @@ impl ContactTracker {
     /// # Errors
     /// [`crate::Error::Input`] names the option.
     pub fn new(robot: Arc<Robot>, samples: usize, noise: TorqueNoise, locate_within: f64) -> Result<Self> {
+        let options = MapOptions { samples, ..MapOptions::default() };
         Ok(ContactTracker {
             identities: Identities::new(),
             deviation: vec![1.0; robot.nv()],
-            surface: SurfaceContact::new(robot, samples, noise, locate_within)?,
+            surface: SurfaceContact::new(robot, &options, noise, locate_within)?,
             since: None,
             measured: 0.0,
             strength: 0.0,
