@@ -25,6 +25,7 @@ __all__ = [
     "Finding",
     "ForceTorqueSensor",
     "GeometryError",
+    "Identifiability",
     "InputError",
     "Isolation",
     "JointFriction",
