@@ -184,3 +184,17 @@ def test_a_force_must_push(force: object) -> None:
 def test_a_configuration_must_be_the_robots(q: FloatArray) -> None:
     with pytest.raises(cs.InputError, match=r"^q: "):
         cs.ContactMap(arm(), samples=50).identifiability(q)
+
+
+@pytest.mark.parametrize("force", [1e-12, 1e12])
+def test_any_force_has_a_deviation(force: float) -> None:
+    told = cs.ContactMap(arm(), samples=50).identifiability(Q, force=force)
+    assert (told.point_std > 0.0).all()
+    assert np.isfinite(told.point_std).all()
+    np.testing.assert_array_equal(told.rank, cs.ContactMap(arm(), samples=50).identifiability(Q).rank)
+
+
+def test_a_link_of_one_sample_has_its_patch() -> None:
+    told = cs.ContactMap(arm(), samples=1, links=["iiwa_link_7"], noise=IDEAL).identifiability(Q)
+    assert len(told) == 1
+    assert 0.0 < told.point_std[0] < 1e-4

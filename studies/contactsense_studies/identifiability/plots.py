@@ -37,8 +37,8 @@ def draw(figure: Figure, study: Study) -> None:
     above, below = halves
     parts = above.subfigures(1, len(study.robots), squeeze=False)[0]
     for part, name in zip(parts, study.robots, strict=True):
-        poses = study.of(name)
-        solids = _solids(study.robot(name), poses)
+        poses, robot = study.of(name), study.robot(name)
+        solids = _solids(robot, poses)
         painted_solids = [
             (triangles, _GREY if deviation is None else colours(norm(100.0 * deviation))[:, :3])
             for triangles, deviation in solids
@@ -50,7 +50,7 @@ def draw(figure: Figure, study: Study) -> None:
             each.set_axis_off()
         share_scale(axes)
         number = "one pose" if len(poses) == 1 else f"median of {len(poses)} poses"
-        part.suptitle(f"{name}, {number}", fontsize=12, color=TEXT)
+        part.suptitle(f"{robot.name}, {number}", fontsize=12, color=TEXT)
     figure.suptitle(
         f"How exactly joint torques locate a contact of {options.force:g} N "
         f"(noise of {options.torque_noise:g} Nm and {100 * options.relative_noise:g} %)",

@@ -32,7 +32,7 @@ def print_study(study: Study, console: Console) -> None:
 def _table(study: Study, name: str) -> Table:
     count = len(study.of(name))
     table = sheet(
-        f"{name}, {'one pose' if count == 1 else f'{count} poses'}",
+        f"{study.robot(name).name}, {'one pose' if count == 1 else f'{count} poses'}",
         ("link",),
         ("samples", "std\ncm", "90 %\ncm", f"in {100 * NEAR:g} cm\n%", "\nrank", "detected\n%"),
     )

@@ -18,9 +18,10 @@ const PATCH_VARIANCE: f64 = 1.0 / 12.0;
 
 /// What the joint torques would tell of a contact at each sample of a map, at one pose.
 ///
-/// The torque of a contact is linearised in its force and in its point on the tangent plane. The force has the prior of the
-/// map, and the point that of the link's surface (its mean and covariance), so that a point of which the torques say nothing is
-/// as uncertain as the surface is large. All three are Gaussian.
+/// The torque of a contact is linearised in five unknowns: its force, and two coordinates of its point in the tangent plane.
+/// Errors of the torque, force and point are Gaussian. The errors have the standard deviations of the noise model at the
+/// contact's own torque, the force those of the map's prior, and the point has the covariance of the link's surface: where the
+/// torques say nothing of it, it is as uncertain as a point anywhere on the link. Confusion with other links is not in it.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -33,7 +34,7 @@ const PATCH_VARIANCE: f64 = 1.0 / 12.0;
 /// let told = map.identifiability(&[0.3, 0.8, -0.4, 0.9, 0.5, 0.7, 0.0], 20.0)?;
 /// let (first, last) = (0, told.points.len() - 1);
 /// assert!(told.rank[first] < 5 && told.rank[last] == 5);
-/// assert!(told.point_std[last] < 0.2);
+/// assert!(told.point_std[last] < 0.5 * told.point_std[first]);
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -45,7 +46,7 @@ pub struct Identifiability {
     pub links: Vec<LinkIndex>,
     /// By sample: its point in the world frame (m).
     pub points: Vec<Vector3<f64>>,
-    /// By sample: standard deviation of the point of a contact there (m), the root of the sum over all directions.
+    /// By sample: standard deviation of the point of a contact there (m), the root of its covariance's trace.
     pub point_std: Vec<f64>,
     /// By sample: how many of the five unknowns, the force and the two coordinates of the point, noiseless torques determine.
     pub rank: Vec<u8>,
