@@ -57,7 +57,7 @@ mod tests {
 
     /// Rows without any order.
     fn rows() -> SMatrix<f64, 7, 5> {
-        SMatrix::from_fn(|row, column| (1.0 + 3.1 * row as f64 + 7.7 * (column * column) as f64).sin())
+        SMatrix::from_fn(|row, column| (1.7 * ((row + 1) * (column * column + 2)) as f64).sin())
     }
 
     #[test]
