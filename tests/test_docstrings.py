@@ -10,7 +10,7 @@ import contactsense as cs
 
 CLASSES = [getattr(cs, name) for name in cs.__all__ if inspect.isclass(getattr(cs, name))]
 IDS = [cls.__name__ for cls in CLASSES]
-# Arrays without a unit: directions, numbers of rows and logarithms of probabilities.
+# Arrays without a unit: directions, numbers of rows, ranks, answers and logarithms of probabilities.
 UNITLESS = {
     "hysteresis_std",
     "normal",
@@ -20,6 +20,8 @@ UNITLESS = {
     "ray",
     "link",
     "log_posterior",
+    "rank",
+    "detectable",
     "weight",
     "directions",
     "relative",

@@ -88,6 +88,7 @@ def objects():
         "ContactEstimate": estimate,
         "ContactEstimate without contact": quiet,
         "MapEstimate": cs.ContactMap(robot, samples=500).evaluate(Q, torque),
+        "Identifiability": cs.ContactMap(robot, samples=500).identifiability(Q),
         "Mode": estimate.modes[0],
         "Particles": particle_filter.particles,
         "ToolLoad": cs.identify_tool(robot, sensors[0], poses, weights),
@@ -112,6 +113,7 @@ NAMES = [
     "ContactReport",
     "ContactEstimate",
     "MapEstimate",
+    "Identifiability",
     "Mode",
     "Particles",
     "ToolLoad",
@@ -166,6 +168,7 @@ def test_another_version_is_refused(objects):
         "ContactReport",
         "ContactEstimate",
         "MapEstimate",
+        "Identifiability",
         "Mode",
         "NoiseModel",
         "Calibration",
@@ -205,7 +208,7 @@ def test_results_are_built_once_and_read_only(objects):
             if isinstance(value, np.ndarray):
                 assert not value.flags.writeable, (obj, name)
                 assert value.flags.c_contiguous
-                assert value.dtype in (np.float64, np.int64)
+                assert value.dtype in (np.float64, np.int64, np.bool_)
                 if type(obj) not in COPIES:
                     assert getattr(obj, name) is value, (obj, name)
 

@@ -71,6 +71,8 @@ SIGNATURES = {
     "ContactMap": "robot, *, samples=5_000, friction=0.5, noise=None, links=None, pull_probability=0.05, "
     "calibration=None",
     "ContactMap.evaluate": "q, tau_ext",
+    "ContactMap.identifiability": "q, *, force=10.0",
+    "Identifiability.to_dict": "",
     "MapEstimate.to_dict": "",
     "Candidate.to_dict": "",
     "Contact.to_dict": "",

@@ -25,6 +25,7 @@ __all__ = [
     "Finding",
     "ForceTorqueSensor",
     "GeometryError",
+    "Identifiability",
     "InputError",
     "Isolation",
     "JointFriction",
@@ -2204,6 +2205,19 @@ class ContactMap:
         Raises:
             InputError: Names the argument.
         """
+    def identifiability(self, q: ArrayLike, *, force: float = 10.0) -> Identifiability:
+        """What the joint torques would tell of a contact at each sample: how exactly its point would be known.
+
+        Args:
+            q: Configuration, `(nq,)`.
+            force: Normal force of the contacts [N].
+
+        Returns:
+            By sample: standard deviation of the point, rank, and whether the contact can be detected.
+
+        Raises:
+            InputError: Names the argument.
+        """
 
 @final
 class MapEstimate(ContactEstimate):
@@ -2241,6 +2255,60 @@ class MapEstimate(ContactEstimate):
     @property
     def region_radius(self) -> float:
         """Radius of the ball about `point` that holds 90 % of the posterior [m]; NaN without contact."""
+
+@final
+class Identifiability:
+    """What the joint torques would tell of a contact at each of a map's samples, at one pose.
+
+    The torque of a contact is linearised in five unknowns: the three components of its force, and two coordinates of its point
+    in the tangent plane of the surface. Noise of the torques, force and point are Gaussian. The noise has the standard
+    deviations of the `NoiseModel` at the contact's own torque, the force those of the map's prior: tangentially `friction *
+    force / 2` in each direction, along the normal 1.45 times `force`, which is that of a logarithm uniform from 2 to 300 N. The
+    point has the covariance of the link's whole surface: where the torques say nothing of it, its standard deviation is that
+    of a point anywhere on the link. Confusion with other links, or with the other side of the same one, is not in it.
+
+    Frozen; can be pickled and copied; arrays are read-only. `n` is the number of samples.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> contact_map = cs.ContactMap(cs.Robot.named("iiwa14"), samples=1000)
+        >>> told = contact_map.identifiability(np.full(7, 0.4), force=20.0)
+        >>> bool(told.point_std[-1] < told.point_std[0]), int(told.rank[-1])
+        (True, 5)
+    """
+
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, strings, and lists in place of arrays and tuples.
+        """
+    def __len__(self) -> int: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def force(self) -> float:
+        """Normal force of the contacts [N]."""
+    @property
+    def links(self) -> tuple[str, ...]:
+        """Each sample's link, `n` names."""
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """The samples' points, `(n, 3)`, world frame [m], in the order of `MapEstimate.points`."""
+    @property
+    def point_std(self) -> NDArray[np.float64]:
+        """Standard deviation of the point of a contact there, `(n,)` [m]: the root of the trace of its covariance."""
+    @property
+    def rank(self) -> NDArray[np.int64]:
+        """How many of the five unknowns torques without noise determine, `(n,)`, from 0 to 5.
+
+        It is the rank of the derivatives of the torque. The prior plays no part in it.
+        """
+    @property
+    def significance(self) -> NDArray[np.float64]:
+        """Norm of the torque of the normal force over its noise without contact, `(n,)` [standard deviations]."""
+    @property
+    def detectable(self) -> NDArray[np.bool_]:
+        """Whether this norm is greater than that of the noise without contact is in 99 % of cases, `(n,)`."""
 
 def _calibrate(
     robot: Robot,

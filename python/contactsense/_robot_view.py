@@ -46,20 +46,32 @@ def body(
         others: things beside it, as triangles `(n, 3, 3)`, counterclockwise from outside, and their colours.
         colours: of links that differ from the rest.
     """
-    across, up, towards = view
     colours = colours or {}
-    solids = [(_faces(robot, q, link), colours.get(link, BODY)) for link in robot.link_names]
+    solids = [(faces(robot, q, link), colours.get(link, BODY)) for link in robot.link_names]
+    return painted(
+        [
+            (triangles, np.tile(to_rgb(colour), (len(triangles), 1)))
+            for triangles, colour in [*solids, *others]
+        ],
+        view,
+    )
+
+
+def painted(solids: Sequence[tuple[FloatArray, Any]], view: Eye) -> PolyCollection:
+    """Triangles `(n, 3, 3)`, counterclockwise from outside, in one colour `(3,)` or in one each `(n, 3)`."""
+    across, up, towards = view
     corners, shades = [], []
-    for faces, colour in [*solids, *others]:
-        normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
+    for triangles, colour in solids:
+        colours = np.broadcast_to(colour, (len(triangles), 3))
+        normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
         normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
         light = 0.72 + 0.28 * np.clip(normals @ (0.6 * towards + 0.5 * up + 0.6 * across), 0.0, 1.0)
         seen = normals @ towards > 0.0
-        corners.append(faces[seen])
-        shades.append(np.clip(np.array(to_rgb(colour)) * 1.08 * light[seen, None], 0.0, 1.0))
-    triangles, shade = _split(np.concatenate(corners), np.concatenate(shades))
-    order = np.argsort(triangles.mean(axis=1) @ towards)
-    flat = np.stack([triangles @ across, triangles @ up], axis=2)[order]
+        corners.append(triangles[seen])
+        shades.append(np.clip(colours[seen] * 1.08 * light[seen, None], 0.0, 1.0))
+    small, shade = split(np.concatenate(corners), np.concatenate(shades))
+    order = np.argsort(small.mean(axis=1) @ towards)
+    flat = np.stack([small @ across, small @ up], axis=2)[order]
     return PolyCollection(list(flat), facecolors=shade[order], edgecolors=shade[order], linewidths=0.4)
 
 
@@ -76,17 +88,20 @@ def share_scale(axes: Any) -> None:
         each.set_aspect("equal")
 
 
-def _faces(robot: Robot, q: FloatArray, link: str) -> FloatArray:
+def faces(robot: Robot, q: FloatArray, link: str) -> FloatArray:
+    """A link's triangles `(n, 3, 3)`, world frame."""
     surface, pose = robot.surface(link), robot.link_pose(q, link)
     return (surface.vertices @ pose[:3, :3].T + pose[:3, 3])[surface.triangles]
 
 
-def _split(triangles: FloatArray, colours: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Halves long edges until the painter's order holds."""
+def split(
+    triangles: FloatArray, colours: FloatArray, longest: float = LONGEST
+) -> tuple[FloatArray, FloatArray]:
+    """Halves edges longer than this [m], by default until the painter's order holds."""
     done, shades = [], []
     while len(triangles):
         sides = np.linalg.norm(triangles - np.roll(triangles, -1, axis=1), axis=2)
-        long = sides.max(axis=1) > LONGEST
+        long = sides.max(axis=1) > longest
         done.append(triangles[~long])
         shades.append(colours[~long])
         triangles, colours, sides = triangles[long], colours[long], sides[long]

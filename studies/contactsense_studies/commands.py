@@ -14,6 +14,7 @@ from contactsense._pictures import picture_file
 from .bimbo2019.options import Options as BimboOptions
 from .example_robots import robot_of
 from .harness import AsJson, add_study, print_json
+from .identifiability.options import Options as IdentifiabilityOptions
 from .real_arm.options import Options as RealArmOptions
 from .vorndamme2017.options import Options as VorndammeOptions
 
@@ -95,4 +96,10 @@ add_study(
     "real_arm",
     "Contacts on arms with the errors of real ones: detection and location before and after calibration.",
     RealArmOptions,
+)
+add_study(
+    app,
+    "identifiability",
+    "How exactly the point of a contact is known from joint torques, over the surfaces of robots.",
+    IdentifiabilityOptions,
 )

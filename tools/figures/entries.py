@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from . import demos, long_studies, real_arm, studies
+from . import demos, identifiability, long_studies, real_arm, studies
 from .entry import Figure
 
 PYTHON = ("python", "-m")
@@ -63,6 +63,24 @@ FIGURES = (
         seeds={"none": range(201, 209), "2 % and 0.1 Nm; sensors 1 N and 0.05 Nm": range(201, 207)},
         reduce=demos.reduce,
         table=demos.table,
+    ),
+    Figure(
+        "identifiability",
+        "What joint torques tell of contacts of 10 N anywhere on a robot, without a measurement.",
+        (*STUDY, "identifiability", "--json"),
+        "All samples of a link in 20 random poses; the most frequent rank.",
+        "docs/contact_map.md",
+        reduce=identifiability.reduce,
+        table=identifiability.study_table,
+    ),
+    Figure(
+        "point_errors",
+        "The posterior of contacts of 10 N on a known link, beside the deviation stated without it.",
+        (*PYTHON, "tools.figures.point_errors"),
+        "Root mean squares over 300 contacts a link, each in a random pose.",
+        "docs/contact_map.md",
+        reduce=identifiability.point_errors,
+        table=identifiability.point_errors_table,
     ),
     Figure(
         "vorndamme2017",

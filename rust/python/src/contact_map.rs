@@ -14,12 +14,16 @@ use crate::arrays::Vector;
 use crate::calibration::noise_of;
 use crate::errors::to_python;
 use crate::estimate::{PyContactEstimate, ATTRIBUTES};
+use crate::identifiability::PyIdentifiability;
 use crate::names::Names;
 use crate::once::Once;
 use crate::pickle::{plain_dict, reduced, Reduced};
 use crate::returned::{from_rows, numbers, read_only};
 use crate::robot::PyRobot;
 use crate::sensor::names;
+
+/// Of a contact whose identifiability is asked for, by default: a firm touch [N].
+const FORCE: f64 = 10.0;
 
 /// Says where on a robot a contact is, and how certain that is: the posterior over samples of all surface.
 ///
@@ -137,6 +141,26 @@ impl PyContactMap {
                 log_posterior,
             }),
         )
+    }
+
+    /// What the joint torques would tell of a contact at each sample: how exactly its point would be known.
+    ///
+    /// Args:
+    ///     q: Configuration, `(nq,)`.
+    ///     force: Normal force of the contacts [N].
+    ///
+    /// Returns:
+    ///     By sample: standard deviation of the point, rank, and whether the contact can be detected.
+    ///
+    /// Raises:
+    ///     InputError: Names the argument.
+    #[pyo3(signature = (q, *, force=None), text_signature = "(self, q, *, force=10.0)")]
+    fn identifiability(&self, q: &Bound<'_, PyAny>, force: Option<Number>) -> PyResult<PyIdentifiability> {
+        let py = q.py();
+        let q = Vector::new("q", q)?.into_vec();
+        let force = force.map(|force| force.named("force")).transpose()?.unwrap_or(FORCE);
+        let found = self.sole(py)?.identifiability(&q, force).map_err(|error| to_python(py, error))?;
+        Ok(PyIdentifiability::new((*self.names).clone(), found))
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {

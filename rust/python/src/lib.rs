@@ -19,6 +19,7 @@ mod diagnosis;
 mod errors;
 mod estimate;
 mod filter_options;
+mod identifiability;
 mod isolator;
 mod monitor;
 mod monitor_external;
@@ -84,5 +85,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<estimate::PyMode>()?;
     module.add_class::<contact_map::PyContactMap>()?;
     module.add_class::<contact_map::PyMapEstimate>()?;
+    module.add_class::<identifiability::PyIdentifiability>()?;
     Ok(())
 }

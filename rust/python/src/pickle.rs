@@ -16,6 +16,7 @@ use crate::contact_map::PyMapEstimate;
 use crate::diagnosis::PyFinding;
 use crate::errors::{input, refused};
 use crate::estimate::{PyContactEstimate, PyMode};
+use crate::identifiability::PyIdentifiability;
 use crate::motion::PyMotion;
 use crate::noise::PyNoiseModel;
 use crate::particle::Particles;
@@ -69,6 +70,7 @@ pub fn _restore<'py>(
         "ContactReport" => made(py, PyContactReport::from_content(read(content)?)),
         "ContactEstimate" => made(py, PyContactEstimate::from_content(read(content)?)),
         "MapEstimate" => Ok(Py::new(py, PyMapEstimate::with_base(read(content)?))?.into_any()),
+        "Identifiability" => made(py, PyIdentifiability::from_content(read(content)?)),
         "Mode" => made(py, PyMode::from_content(read(content)?)),
         "Calibration" => made(py, PyCalibration(read(content)?)),
         "JointFriction" => made(py, PyJointFriction::from_content(read(content)?)),

@@ -43,12 +43,12 @@ use crate::torque::{PushLikelihood, TorqueNoise, LANES};
 /// ```
 #[derive(Debug, Clone)]
 pub struct ContactMap {
-    robot: Arc<Robot>,
-    noise: TorqueNoise,
-    wanted: Vec<usize>,
-    kinematics: Kinematics,
+    pub(super) robot: Arc<Robot>,
+    pub(super) noise: TorqueNoise,
+    pub(super) wanted: Vec<usize>,
+    pub(super) kinematics: Kinematics,
     deviation: Vec<f64>,
-    posterior: SurfacePosterior,
+    pub(super) posterior: SurfacePosterior,
     summary: Summary,
 }
 

@@ -2,6 +2,7 @@
 
 mod contact_map;
 mod estimate;
+mod identifiability;
 mod leaves;
 mod measurement;
 mod options;
@@ -15,4 +16,5 @@ pub(crate) use surface_posterior::SurfacePosterior;
 
 pub use contact_map::ContactMap;
 pub use estimate::MapEstimate;
+pub use identifiability::Identifiability;
 pub use options::MapOptions;

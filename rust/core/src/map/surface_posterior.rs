@@ -59,7 +59,7 @@ enum Stage {
 #[derive(Debug, Clone)]
 pub(crate) struct SurfacePosterior {
     robot: Arc<Robot>,
-    prior: ForcePrior,
+    pub(super) prior: ForcePrior,
     pub(super) samples: SurfaceSamples,
     /// Newest last.
     measurements: Vec<Measurement>,

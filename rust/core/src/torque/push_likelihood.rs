@@ -70,6 +70,13 @@ impl ForcePrior {
             log_pull: pull_probability.ln(),
         }
     }
+
+    /// Standard deviations of a normal force of this size, and of each force across the normal beside it (N): to first order,
+    /// the former is the force times the standard deviation of its logarithm.
+    pub fn deviations(&self, force: f64) -> [f64; 2] {
+        let [least, greatest] = self.range;
+        [force * (greatest / least).ln() / 12.0_f64.sqrt(), force * self.slack]
+    }
 }
 
 /// What a torque says of contacts on some pieces: of one that pushes there, and of one that pulls.
