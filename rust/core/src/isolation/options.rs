@@ -51,8 +51,8 @@ pub struct IsolatorOptions {
     pub wanted_contacts: Vec<String>,
     /// A contact is located if 90 % of the places that explain the torques are within this distance of its point (m).
     pub locate_within: f64,
-    /// Samples of the surface by which a single contact of an arm without sensors is judged, where closed forms are not exact; zero
-    /// for closed forms only.
+    /// Samples of the surface by which a single contact of an arm without sensors is judged, where the torques have noise (3 mNm or
+    /// more); zero for closed forms only.
     #[cfg_attr(feature = "serde", serde(default = "samples"))]
     pub samples: usize,
     /// Probability that a contact pulls on the surface.
@@ -62,6 +62,10 @@ pub struct IsolatorOptions {
 
 /// Enough for centimetres on an arm: pieces that matter are divided.
 const SAMPLES: usize = 1000;
+
+/// Torques with a smaller standard deviation than any sensor's are simulated (Nm): closed forms use all that they tell, and samples
+/// of the surface would have to be finer than it is.
+const IDEAL: f64 = 3e-3;
 
 #[cfg(feature = "serde")]
 fn samples() -> usize {
@@ -118,7 +122,8 @@ impl IsolatorOptions {
     pub(super) fn surface(&self, robot: &Arc<Robot>, noise: &TorqueNoise) -> Result<Option<SurfaceContact>> {
         let Self { samples, pull_probability, .. } = *self;
         let alone = self.sensors.is_empty() && self.pushing && !robot.floating_base();
-        if samples == 0 || !alone || !robot.has_contact_links() {
+        let ideal = noise.at_rest().iter().all(|deviation| *deviation < IDEAL);
+        if samples == 0 || !alone || ideal || !robot.has_contact_links() {
             return Ok(None);
         }
         let options = MapOptions { samples, pull_probability, ..MapOptions::default() };

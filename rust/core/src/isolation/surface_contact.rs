@@ -169,6 +169,9 @@ impl SurfaceContact {
             [found] if !found.located => Some(found.clone()),
             _ => None,
         };
+        if !self.summary.estimate().explained {
+            return;
+        }
         self.answer(now, false, isolation);
         let Isolation { contacts, .. } = isolation;
         if let (Some(found), [contact]) = (found, &mut contacts[..]) {
@@ -201,7 +204,7 @@ impl SurfaceContact {
             return;
         }
         // Two answers that both explain the torques: neither is sure.
-        let sure = contradicted.is_none() && region_radius <= self.locate_within;
+        let sure = contradicted.is_none() && explained && region_radius <= self.locate_within;
         let mut contact = closed_form.filter(agrees).unwrap_or_else(|| self.contact(now, &place, explained));
         contact.located = sure;
         contact.posterior = Some(self.describe(now, &place, region_radius, isolation));
