@@ -77,7 +77,9 @@ def test_a_joint_under_its_threshold_decides_nothing() -> None:
     assert seen > 10
 
 
-def test_agreement_of_a_redundant_torque_does_not_shrink_the_uncertainty() -> None:
+# The posterior has errors of places as well: it grows less than the noise.
+@pytest.mark.parametrize(("samples", "grows"), [(0, 2.0), (1000, 1.0)])
+def test_agreement_of_a_redundant_torque_does_not_shrink_the_uncertainty(samples: int, grows: float) -> None:
     """Without noise the torques agree to rounding; the stated noise stays what it is."""
     robot = cs.Robot.named("iiwa14")
     rng = np.random.default_rng(4)
@@ -85,13 +87,14 @@ def test_agreement_of_a_redundant_torque_does_not_shrink_the_uncertainty() -> No
         tau = push_torque(robot, touch.q, touch.link, touch.point, touch.force)
         stds = []
         for threshold in (0.003, 0.03):
-            (contact,) = cs.ContactIsolator(robot, torque_threshold=threshold).isolate(touch.q, tau).contacts
+            isolator = cs.ContactIsolator(robot, torque_threshold=threshold, samples=samples)
+            (contact,) = isolator.isolate(touch.q, tau).contacts
             if np.isfinite(contact.point_std):
                 stds.append(contact.point_std)
                 # A point moves by at least the noise over the force, a lever of a millimetre at the least.
                 assert contact.point_std > threshold / 3 / np.linalg.norm(touch.force) / 20
         if len(stds) == 2:
-            assert stds[1] > 2 * stds[0]
+            assert stds[1] > grows * stds[0]
 
 
 def test_located_is_a_distance_in_metres() -> None:
