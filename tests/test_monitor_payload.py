@@ -159,7 +159,7 @@ def realistic() -> tuple[object, cs.Calibration]:
     from contactsense import sim
 
     arm = sim.ImperfectArm.typical(IIWA, 11)
-    plan = cs.exciting_motion(IIWA, 30.0, dt=DT, seed=5)
+    plan = cs.exciting_motion(IIWA, 60.0, dt=DT, seed=5)
     log = sim.record_imperfect(IIWA, arm, sim.JointMotion(plan.time, plan.q, plan.v, plan.a), seed=5).log
     return arm, cs.calibrate(IIWA, log)
 
@@ -188,8 +188,8 @@ def test_a_gripper_that_the_model_lacks_is_proposed(contacts: int) -> None:
     assert found.mass == pytest.approx(GRIPPER_MASS, rel=0.05)
     np.testing.assert_allclose(found.com, GRIPPER_COM, atol=0.01)
     assert found.poses >= 3
-    assert 0.8 <= found.evidence <= 1.0
-    assert 0.0 < found.mass_std < 0.1
+    assert 0.6 <= found.evidence <= 1.0
+    assert abs(found.mass - GRIPPER_MASS) < 3.0 * found.mass_std < 0.2
     assert (found.com_std < 0.03).all()
     # Taken over, it is no longer missing.
     monitor.set_payload(found.link, found.mass, found.com)

@@ -13,7 +13,7 @@ const UNKNOWNS: usize = 4;
 const LOAD: f64 = 0.15;
 const LEVER: f64 = 0.15;
 /// A contact counts less the farther it is beyond so many variances (mean over the joints).
-pub(super) const OUTLYING: f64 = 9.0;
+const OUTLYING: f64 = 9.0;
 /// The weights have settled after so many rounds.
 const ROUNDS: usize = 20;
 /// First moments are found by loads at this distance (m); what they cause is linear in it.

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, SMatrix, Vector3};
 
 use super::contact_monitor::ContactMonitor;
-use super::payload_fit::{columns, fit, PayloadFit, Spread, OUTLYING};
+use super::payload_fit::{columns, fit, PayloadFit, Spread};
 use super::recent_motion::{Block, BLOCK};
 use crate::error::Result;
 use crate::observer::Step;
@@ -19,7 +19,10 @@ const ALIKE: f64 = 1.0;
 const FRICTION: f64 = 0.25;
 /// The smallest error of a mean that is taken seriously (Nm; N).
 const SMALLEST: f64 = 0.01;
-/// A payload leaves at most this share of the square of what was there without it.
+/// Beyond so many variances (mean over the joints) a torque is none of an untouched robot.
+const SEEN: f64 = 3.0;
+/// A payload leaves at most so many variances, or this share of what was there without it.
+const EXPLAINED: f64 = 1.0;
 const LEFT: f64 = 0.1;
 /// Directions of gravity in the link's frame that differ by less are one pose (rad).
 const POSE: f64 = 0.25;
@@ -28,10 +31,10 @@ const HELD: f64 = 0.5;
 /// With fewer poses a force that does not turn with gravity would do as well.
 const FEWEST_POSES: usize = 3;
 /// The payload must explain this share of all torque that is none of an untouched robot ...
-const LEAST_EVIDENCE: f64 = 0.8;
+const LEAST_EVIDENCE: f64 = 0.6;
 /// ... which must be there for this share of the time.
 const LEAST_SEEN: f64 = 0.5;
-/// The last seconds must show it too: what was put down is no payload (s).
+/// The last seconds must not contradict it: what was put down is no payload (s).
 const LATEST: f64 = 1.5;
 /// A mass of fewer standard deviations is none, and a centre that is not known to this is no place (m).
 const SIGNIFICANT: f64 = 5.0;
@@ -111,6 +114,8 @@ impl ContactMonitor {
         let default = NoiseModel::default();
         let noise = calibrated.or(self.options.isolation.noise.as_ref()).unwrap_or(&default);
         let spread = spread(&self.robot, noise)?;
+        // Scales of torques do not average out.
+        let relative = noise.relative.iter().sum::<f64>() / noise.relative.len().max(1) as f64;
         let blocks: Vec<Block<'_>> = self.recent.blocks().collect();
         let mut best: Option<PayloadProposal> = None;
         for link in tips(&self.robot) {
@@ -121,7 +126,7 @@ impl ContactMonitor {
                 let from = blocks.len() - count;
                 let window =
                     Window { blocks: &blocks[from..], columns: &columns[from..], gravity: &gravity[from..] };
-                if let Some(found) = window.proposal(&self.robot, link, &spread) {
+                if let Some(found) = window.proposal(&self.robot, link, &spread, relative) {
                     if best.as_ref().is_none_or(|best| found.evidence > best.evidence) {
                         best = Some(found);
                     }
@@ -177,23 +182,29 @@ struct Window<'a> {
 }
 
 impl Window<'_> {
-    fn proposal(&self, robot: &Robot, link: LinkIndex, spread: &Spread) -> Option<PayloadProposal> {
+    fn proposal(
+        &self,
+        robot: &Robot,
+        link: LinkIndex,
+        spread: &Spread,
+        relative: f64,
+    ) -> Option<PayloadProposal> {
         let without = fit(self.blocks, None, robot.mass(), spread)?;
-        let seen: Vec<bool> = without.left.iter().map(|left| *left > OUTLYING).collect();
+        let seen: Vec<bool> = without.left.iter().map(|left| *left > SEEN).collect();
         if share(&seen) < LEAST_SEEN {
             return None;
         }
         let with = fit(self.blocks, Some(self.columns), robot.mass(), spread)?;
         let pairs = || with.left.iter().zip(&without.left);
         let explained: Vec<bool> =
-            pairs().zip(&seen).map(|((left, all), seen)| *seen && *left < OUTLYING.max(LEFT * all)).collect();
+            pairs().map(|(left, all)| *all > SEEN && *left < EXPLAINED.max(LEFT * all)).collect();
         // Before it was picked up, a payload would leave more than there was.
-        let counts =
-            pairs().zip(&seen).filter(|((left, all), seen)| **seen || **left > OUTLYING.max(**all)).count();
-        let evidence = explained.iter().filter(|it| **it).count() as f64 / counts.max(1) as f64;
-        let latest = explained.len() - explained.len().min((LATEST / BLOCK) as usize);
+        let against: Vec<bool> = pairs().map(|(left, all)| *left > SEEN.max(*all)).collect();
+        let told: Vec<bool> = seen.iter().zip(&against).map(|(seen, against)| *seen || *against).collect();
+        let evidence = share(&explained) / share(&told);
+        let latest = told.len() - told.len().min((LATEST / BLOCK) as usize);
         let poses = self.poses(&explained);
-        if evidence < LEAST_EVIDENCE || share(&explained[latest..]) < 0.5 || poses < FEWEST_POSES {
+        if evidence < LEAST_EVIDENCE || share(&against[latest..]) > 0.5 || poses < FEWEST_POSES {
             return None;
         }
         let (mass, mass_std, com, com_std) = centre(&with)?;
@@ -201,9 +212,9 @@ impl Window<'_> {
         known.then(|| PayloadProposal {
             link: robot[link].name.clone(),
             mass,
-            mass_std,
+            mass_std: mass_std.hypot(relative * mass),
             com: com.into(),
-            com_std,
+            com_std: com_std.map(|std| std.hypot(relative * com.norm())),
             evidence,
             poses,
             seconds: self.blocks.len() as f64 * BLOCK,
