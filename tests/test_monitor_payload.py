@@ -171,7 +171,9 @@ def after_motion(seed: int, *, gripper: bool, contacts: int) -> cs.ContactMonito
     assert isinstance(arm, sim.ImperfectArm)
     if gripper:
         arm = replace(arm, payload=sim.Payload(LINK, GRIPPER_MASS, GRIPPER_COM))
-    log = sim.PersonScene(seconds=20.0, contacts=contacts, force=(10.0, 40.0), seed=seed).record(IIWA, arm).log
+    log = (
+        sim.PersonScene(seconds=20.0, contacts=contacts, force=(10.0, 40.0), seed=seed).record(IIWA, arm).log
+    )
     monitor = cs.ContactMonitor(IIWA, dt=DT, calibration=calibrated)
     assert log.tau is not None
     for q, v, tau in zip(log.q, log.v, log.tau, strict=True):

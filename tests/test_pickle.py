@@ -106,7 +106,15 @@ def proposal(robot):
 
 
 # Settings, whose arrays are copies at every access.
-COPIES = (cs.ForceTorqueSensor, cs.NoiseModel, cs.Calibration, cs.JointFriction, cs.BodyInertia, cs.ToolLoad, cs.PayloadProposal)
+COPIES = (
+    cs.ForceTorqueSensor,
+    cs.NoiseModel,
+    cs.Calibration,
+    cs.JointFriction,
+    cs.BodyInertia,
+    cs.ToolLoad,
+    cs.PayloadProposal,
+)
 NAMES = [
     "ForceTorqueSensor",
     "NoiseModel",
