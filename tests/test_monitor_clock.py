@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pytest
@@ -172,3 +173,41 @@ def test_what_a_monitor_was_made_of(arm: cs.Robot) -> None:
     assert monitor.robot is arm
     assert monitor.dt == DT
     np.testing.assert_array_equal(monitor.bias, np.zeros(7))
+
+
+@pytest.fixture(scope="module")
+def recorded(arm: cs.Robot) -> tuple[cs.Calibration, list[Any]]:
+    """A calibration of an arm with errors, and logs of 60 s each without contact at 1 kHz."""
+    pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install contactsense[sim]")
+    from contactsense import sim
+
+    errors = sim.ImperfectArm.typical(arm, 3)
+    plan = cs.exciting_motion(arm, 60.0, dt=DT, seed=7)
+    log = sim.record_imperfect(arm, errors, sim.JointMotion(plan.time, plan.q, plan.v, plan.a), seed=7).log
+    free = [sim.PersonScene(seconds=60.0, contacts=0, seed=seed).record(arm, errors).log for seed in (1, 2)]
+    return cs.calibrate(arm, log), [*free]
+
+
+def jittered_rows(time: np.ndarray, seed: int) -> np.ndarray:
+    """Rows that are 0.5 to 20 ms apart, and now and then a dropped tick more."""
+    rng = np.random.default_rng(seed)
+    count = int(len(time) * DT / 0.5e-3)
+    steps = rng.uniform(0.5e-3, 20e-3, count) + (rng.random(count) < 0.02) * rng.uniform(0.5e-3, 20e-3, count)
+    times = time[0] + np.cumsum(steps)
+    rows: np.ndarray = np.unique(np.searchsorted(time, times[times < time[-1]], side="right") - 1)
+    return rows
+
+
+@pytest.mark.parametrize("nominal", [1e-3, 10e-3])
+def test_unequal_steps_of_an_arm_with_errors_raise_no_alarm(
+    arm: cs.Robot, recorded: tuple[cs.Calibration, list[Any]], nominal: float
+) -> None:
+    calibration, logs = recorded
+    for seed, log in enumerate(logs):
+        monitor = cs.ContactMonitor(arm, dt=nominal, calibration=calibration)
+        rows = jittered_rows(log.time, seed)
+        onsets = []
+        for row, step in zip(rows, np.diff(log.time[rows], prepend=log.time[rows[0]] - DT), strict=True):
+            if monitor.update(log.q[row], log.v[row], log.tau[row], dt=step).onset:
+                onsets.append(log.time[row])
+        assert onsets == []

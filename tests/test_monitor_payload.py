@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -145,3 +146,97 @@ def test_sensors_read_the_payload_too() -> None:
         report = monitor.update(q, rest, taus[1], readings[1])
         assert not report.collision
         np.testing.assert_allclose(report.wrenches, 0.0, atol=1e-6)
+
+
+# A gripper that the model lacks, mounted after the calibration.
+GRIPPER_MASS, GRIPPER_COM = 0.73, (0.01, -0.02, 0.09)
+
+
+@cache
+def realistic() -> tuple[object, cs.Calibration]:
+    """An arm with errors and its calibration."""
+    pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install contactsense[sim]")
+    from contactsense import sim
+
+    arm = sim.ImperfectArm.typical(IIWA, 11)
+    plan = cs.exciting_motion(IIWA, 60.0, dt=DT, seed=5)
+    log = sim.record_imperfect(IIWA, arm, sim.JointMotion(plan.time, plan.q, plan.v, plan.a), seed=5).log
+    return arm, cs.calibrate(IIWA, log)
+
+
+def after_motion(seed: int, *, gripper: bool, contacts: int) -> cs.ContactMonitor:
+    arm, calibrated = realistic()
+    from contactsense import sim
+
+    assert isinstance(arm, sim.ImperfectArm)
+    if gripper:
+        arm = replace(arm, payload=sim.Payload(LINK, GRIPPER_MASS, GRIPPER_COM))
+    log = (
+        sim.PersonScene(seconds=20.0, contacts=contacts, force=(10.0, 40.0), seed=seed).record(IIWA, arm).log
+    )
+    monitor = cs.ContactMonitor(IIWA, dt=DT, calibration=calibrated)
+    assert log.tau is not None
+    for q, v, tau in zip(log.q, log.v, log.tau, strict=True):
+        monitor.update(q, v, tau)
+    return monitor
+
+
+@pytest.mark.parametrize("contacts", [0, 3])
+def test_a_gripper_that_the_model_lacks_is_proposed(contacts: int) -> None:
+    monitor = after_motion(21 + contacts, gripper=True, contacts=contacts)
+    found = monitor.propose_payload()
+    assert found is not None
+    assert found.link == LINK
+    assert found.mass == pytest.approx(GRIPPER_MASS, rel=0.05)
+    np.testing.assert_allclose(found.com, GRIPPER_COM, atol=0.01)
+    assert found.poses >= 3
+    assert 0.6 <= found.evidence <= 1.0
+    assert abs(found.mass - GRIPPER_MASS) < 3.0 * found.mass_std < 0.2
+    assert (found.com_std < 0.03).all()
+    # Taken over, it is no longer missing.
+    monitor.set_payload(found.link, found.mass, found.com)
+    assert monitor.propose_payload() is None
+
+
+@pytest.mark.parametrize("contacts", [0, 3])
+def test_without_a_payload_none_is_proposed(contacts: int) -> None:
+    assert after_motion(31 + contacts, gripper=False, contacts=contacts).propose_payload() is None
+
+
+def after_holding(torque: object, poses: int) -> cs.PayloadProposal | None:
+    """Of `torque(q)` from outside in some poses, held for 3 s each."""
+    assert callable(torque)
+    monitor = cs.ContactMonitor(IIWA, dt=0.01, calibration=calibration())
+    rest = np.zeros(7)
+    for pose in range(poses):
+        q = IIWA.random_configuration(40 + pose)
+        tau = IIWA.inverse_dynamics(q, rest, rest) - torque(q)
+        for tick in range(300):
+            # Between two poses nothing is known.
+            monitor.update(q, rest, tau, dt=1.0 if tick == 0 and pose else None)
+    return monitor.propose_payload()
+
+
+def weight(q: np.ndarray) -> np.ndarray:
+    rest = np.zeros(7)
+    return IIWA.inverse_dynamics(q, rest, rest) - LOADED.inverse_dynamics(q, rest, rest)
+
+
+def test_it_takes_three_poses() -> None:
+    assert after_holding(weight, 2) is None
+    found = after_holding(weight, 4)
+    assert found is not None
+    assert found.mass == pytest.approx(MASS, rel=0.02)
+    np.testing.assert_allclose(found.com, COM, atol=5e-3)
+
+
+@pytest.mark.parametrize("with_link", [False, True])
+def test_a_held_force_that_does_not_turn_with_gravity_is_no_payload(with_link: bool) -> None:
+    def pushed(q: np.ndarray) -> np.ndarray:
+        pose = IIWA.link_pose(q, LINK)
+        force = pose[:3, :3] @ [15.0, 0.0, 12.0] if with_link else np.array([15.0, 10.0, 0.0])
+        point = pose[:3, :3] @ [0.0, 0.0, 0.05] + pose[:3, 3]
+        torque: np.ndarray = IIWA.jacobian(q, LINK, point)[:3].T @ force
+        return torque
+
+    assert after_holding(pushed, 5) is None

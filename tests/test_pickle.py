@@ -92,12 +92,30 @@ def objects():
         "Mode": estimate.modes[0],
         "Particles": particle_filter.particles,
         "ToolLoad": cs.identify_tool(robot, sensors[0], poses, weights),
+        "PayloadProposal": proposal(robot),
         "Motion": cs.exciting_motion(robot, 1.0, dt=0.05),
     }
 
 
+def proposal(robot):
+    loaded = robot.with_payload("iiwa_link_7", 0.7, [0.0, 0.0, 0.1])
+    monitor = cs.ContactMonitor(robot, dt=0.01)
+    for angle in np.arange(0.0, 10.0, 0.01)[:, None] + np.arange(7):
+        q, v, a = np.sin(angle), np.cos(angle), -np.sin(angle)
+        monitor.update(q, v, loaded.inverse_dynamics(q, v, a))
+    return monitor.propose_payload()
+
+
 # Settings, whose arrays are copies at every access.
-COPIES = (cs.ForceTorqueSensor, cs.NoiseModel, cs.Calibration, cs.JointFriction, cs.BodyInertia, cs.ToolLoad)
+COPIES = (
+    cs.ForceTorqueSensor,
+    cs.NoiseModel,
+    cs.Calibration,
+    cs.JointFriction,
+    cs.BodyInertia,
+    cs.ToolLoad,
+    cs.PayloadProposal,
+)
 NAMES = [
     "ForceTorqueSensor",
     "NoiseModel",
@@ -117,6 +135,7 @@ NAMES = [
     "Mode",
     "Particles",
     "ToolLoad",
+    "PayloadProposal",
     "Motion",
 ]
 
@@ -139,6 +158,7 @@ def test_settings_are_equal_after_a_round_trip(objects):
         "JointFriction",
         "BodyInertia",
         "ToolLoad",
+        "PayloadProposal",
     ):
         assert pickle.loads(pickle.dumps(objects[name])) == objects[name]
 

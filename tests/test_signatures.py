@@ -58,6 +58,8 @@ SIGNATURES = {
     "ContactMonitor.update_external": "q, tau_ext, wrenches=None, *, v=None, dt=None",
     "ContactMonitor.set_payload": "link, mass, com",
     "ContactMonitor.clear_payload": "",
+    "ContactMonitor.propose_payload": "",
+    "PayloadProposal.to_dict": "",
     "ContactMonitor.tare": "",
     "ContactMonitor.reset": "",
     "ContactParticleFilter": "robot, *, particles=10_000, motion='curvature', measurement='normal', "

@@ -38,6 +38,7 @@ __all__ = [
     "NoiseModel",
     "Particles",
     "Payload",
+    "PayloadProposal",
     "RayHits",
     "Robot",
     "Surface",
@@ -692,6 +693,51 @@ class LoadCompensator:
 
         Raises:
             InputError: Names the argument.
+        """
+
+@final
+class PayloadProposal:
+    """A payload that recent motion shows and the model lacks, as `ContactMonitor.propose_payload` finds it.
+
+    Frozen; equal where all numbers are; can be pickled and copied.
+
+    Example:
+        >>> import contactsense as cs
+        >>> monitor = cs.ContactMonitor(cs.Robot.named("iiwa14"), dt=1e-3)
+        >>> monitor.propose_payload() is None  # of a robot that has not moved
+        True
+    """
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def link(self) -> str:
+        """Name of the link that carries it."""
+    @property
+    def mass(self) -> float:
+        """Mass in addition to what `monitor.robot` has [kg]."""
+    @property
+    def mass_std(self) -> float:
+        """Standard deviation of `mass` [kg]."""
+    @property
+    def com(self) -> NDArray[np.float64]:
+        """Centre of mass, `(3,)`, link frame [m]; a read-only copy."""
+    @property
+    def com_std(self) -> NDArray[np.float64]:
+        """Standard deviation of each coordinate of `com`, `(3,)` [m]; a read-only copy."""
+    @property
+    def evidence(self) -> float:
+        """Share of the time with an external torque in which the payload explains it, from 0 to 1."""
+    @property
+    def poses(self) -> int:
+        """Number of poses of the link towards gravity in which it does."""
+    @property
+    def seconds(self) -> float:
+        """Length of the motion that it was found in, up to now [s]."""
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, strings, and lists in place of arrays.
         """
 
 @final
@@ -1735,6 +1781,30 @@ class ContactMonitor:
             >>> monitor.clear_payload()
             >>> monitor.robot.mass == robot.mass
             True
+        """
+    def propose_payload(self) -> PayloadProposal | None:
+        """The payload that recent motion shows and the model lacks.
+
+        It is a force that turns with gravity, at a link at the end of a chain, in the external torque of the last minute or
+        less. `set_payload(found.link, found.mass, found.com)` takes it where no payload was set before. A constant force
+        straight down at one point of the link is a payload, whoever exerts it. Not for the control loop: it takes some
+        milliseconds and allocates.
+
+        Returns:
+            A `PayloadProposal`, or None where recent motion shows none: without an external torque, in fewer than three poses,
+            of a contact, and on a floating base. `set_payload`, `clear_payload` and `reset` begin anew.
+
+        Example:
+            >>> import contactsense as cs, numpy as np
+            >>> robot = cs.Robot.named("iiwa14")
+            >>> loaded = robot.with_payload("iiwa_link_7", 0.7, [0.0, 0.0, 0.1])
+            >>> monitor = cs.ContactMonitor(robot, dt=0.01)
+            >>> for angle in np.arange(0.0, 10.0, 0.01)[:, None] + np.arange(7):
+            ...     q, v, a = np.sin(angle), np.cos(angle), -np.sin(angle)
+            ...     _ = monitor.update(q, v, loaded.inverse_dynamics(q, v, a))
+            >>> found = monitor.propose_payload()
+            >>> found.link, round(found.mass, 1), found.com.round(2).tolist()[2]
+            ('iiwa_link_7', 0.7, 0.1)
         """
     def clear_payload(self) -> None:
         """Says that the robot carries nothing from the next tick on but what its description or calibration has.

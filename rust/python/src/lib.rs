@@ -63,6 +63,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<sensor::PyForceTorqueSensor>()?;
     module.add_class::<compensator::PyLoadCompensator>()?;
     module.add_class::<tool_load::PyToolLoad>()?;
+    module.add_class::<monitor_payload::PyPayloadProposal>()?;
     module.add_function(wrap_pyfunction!(tool_load::identify_tool, module)?)?;
     module.add_class::<noise::PyNoiseModel>()?;
     module.add_function(wrap_pyfunction!(calibration::_calibrate, module)?)?;

@@ -17,6 +17,7 @@ use crate::diagnosis::PyFinding;
 use crate::errors::{input, refused};
 use crate::estimate::{PyContactEstimate, PyMode};
 use crate::identifiability::PyIdentifiability;
+use crate::monitor_payload::PyPayloadProposal;
 use crate::motion::PyMotion;
 use crate::noise::PyNoiseModel;
 use crate::particle::Particles;
@@ -81,6 +82,7 @@ pub fn _restore<'py>(
         "NoiseModel" => made(py, PyNoiseModel(read(content)?)),
         "ForceTorqueSensor" => made(py, PyForceTorqueSensor(read(content)?)),
         "ToolLoad" => made(py, PyToolLoad(read(content)?)),
+        "PayloadProposal" => made(py, PyPayloadProposal(read(content)?)),
         "ClosestPoints" => made(py, ClosestPoints::from_arrays(content)?),
         "RayHits" => made(py, RayHits::from_arrays(content)?),
         "SurfaceSamples" => made(py, SurfaceSamples::from_arrays(content)?),

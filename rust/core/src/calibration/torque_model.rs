@@ -137,6 +137,13 @@ impl TorqueModel {
         self.torque_lead.reset();
     }
 
+    /// The next step is one over a gap: rates of signals are not known from before it. Friction and what gears keep back are,
+    /// about: they depend on motion and load, not on time.
+    pub fn bridge_gap(&mut self) {
+        self.velocity_lead.reset();
+        self.torque_lead.reset();
+    }
+
     /// Corrects `v` and `tau` in place, both `(nv,)`, after a step of `dt` (s; zero at the first).
     #[inline]
     pub fn correct(&mut self, dt: f64, v: &mut [f64], tau: &mut [f64]) {
@@ -203,6 +210,12 @@ mod tests {
         assert_eq!(friction_at(0.0), 2.0);
         // Half the way back.
         assert!((0..10).map(|_| friction_at(-1.0)).last().unwrap().abs() < 1e-12);
+        // Over a gap it is kept.
+        assert!((friction_at(1.0) - 0.2).abs() < 1e-12);
+        model.bridge_gap();
+        let mut tau = [0.0; 7];
+        model.correct(1.0, &mut [0.0; 7], &mut tau);
+        assert!((tau[0] + 0.2).abs() < 1e-12);
         model.reset();
         let mut tau = [0.0; 7];
         model.correct(1e-3, &mut [0.0; 7], &mut tau);

@@ -2,17 +2,17 @@
 
 use std::sync::Arc;
 
-use super::free_directions::{level_shares, FreeDirections};
+use super::free_directions::FreeDirections;
 use super::friction_errors::FrictionErrors;
 use super::payload_errors::{Load, PayloadErrors};
 use super::recent_torque::RecentTorque;
+use super::signal::Signal;
 use super::slow_errors::SlowErrors;
 use super::velocity_covariance::VelocityCovariance;
-use super::whitening::Whitening;
 use crate::math::chi_square::standard_deviations;
 use crate::observer::{ObserverBank, Step};
 use crate::robot::{Kinematics, Robot};
-use crate::torque::{ErrorVariances, NoiseModel};
+use crate::torque::ErrorVariances;
 
 /// Gains of the bank (1/s): a slow one sees weak contacts, a fast one hard impacts early.
 pub(crate) const GAINS: [f64; 3] = [8.0, 50.0, 200.0];
@@ -25,64 +25,6 @@ pub(crate) const FOLLOW_TIME: f64 = 3.0;
 const SUSPICIOUS: f64 = 0.5;
 /// A joint is over its own threshold beyond so many standard deviations.
 const JOINT_LEVEL: f64 = 5.0;
-
-/// A torque behind observers of one gain a joint, and its covariance.
-#[derive(Debug, Clone)]
-struct Signal {
-    /// What the observer leaves of the variance of each error, by velocity variable; of the velocities' as a root.
-    torque: Vec<f64>,
-    velocity: Vec<f64>,
-    model: Vec<f64>,
-    friction: Vec<f64>,
-    whitening: Whitening,
-    /// That the statistic exceeds at the chosen rate of false alarms.
-    level: f64,
-    /// The level of Gaussian errors.
-    gaussian_level: f64,
-    /// Of the level, where directions are taken away, by their number.
-    shares: Vec<f64>,
-    statistic: f64,
-}
-
-impl Signal {
-    fn new(variances: &ErrorVariances, gain: &[f64], dt: f64, level: f64, gaussian_level: f64) -> Self {
-        let by_joint = |share: &dyn Fn(usize) -> f64| (0..gain.len()).map(share).collect::<Vec<f64>>();
-        Signal {
-            torque: by_joint(&|j| variances.torque[j] * NoiseModel::torque_share(gain[j], dt)),
-            velocity: by_joint(&|j| NoiseModel::velocity_share(gain[j], dt).sqrt()),
-            model: by_joint(&|j| NoiseModel::model_share(gain[j], variances.slow.model_time[j])),
-            friction: by_joint(&|j| variances.friction[j] * FrictionErrors::response(gain[j])),
-            whitening: Whitening::new(gain.len()),
-            level,
-            gaussian_level,
-            shares: level_shares(gain.len(), gaussian_level),
-            statistic: 0.0,
-        }
-    }
-
-    #[inline]
-    /// A tick's work on the covariance; true where it is complete.
-    fn whiten(
-        &mut self,
-        velocity: &VelocityCovariance,
-        slow: &SlowErrors,
-        friction: &FrictionErrors,
-        payload: &PayloadErrors,
-    ) -> bool {
-        let Signal { whitening, .. } = self;
-        let (torque, root, model, of_friction) = (&self.torque, &self.velocity, &self.model, &self.friction);
-        let shares = friction.shares();
-        whitening.advance(|i, row| {
-            for ((value, product), other) in row.iter_mut().zip(velocity.row(i)).zip(root) {
-                *value = product * root[i] * other;
-            }
-            row[i] += torque[i] + slow.variance(i, model[i]) + of_friction[i] * shares[i];
-            if payload.any() {
-                payload.add_to_row(i, row);
-            }
-        })
-    }
-}
 
 /// Levels of a statistic for one gain.
 #[derive(Debug, Clone, Copy)]
@@ -180,12 +122,18 @@ impl ContactTest {
         self.friction.advance(v, step.length(self.dt));
         self.payload.advance(&self.robot, kinematics, step.length(self.dt));
         let Self { signals, velocity, slow, friction, payload, .. } = self;
+        let told = unexplained.map(|_| step.length(self.dt));
+        signals.iter_mut().for_each(|signal| signal.advance(told));
+        let whiten = |signal: &mut Signal| signal.whiten(velocity, slow, friction, payload);
         if self.started {
-            if signals[self.next].whiten(velocity, slow, friction, payload) {
-                self.next = (self.next + 1) % signals.len();
+            let next = self.next;
+            if whiten(&mut signals[next]) {
+                self.next = (next + 1) % signals.len();
             }
+            let others = signals.iter_mut().enumerate().filter(|(which, _)| *which != next);
+            others.filter(|(_, signal)| signal.stale()).for_each(|(_, signal)| _ = whiten(signal));
         } else {
-            signals.iter_mut().for_each(|signal| _ = signal.whiten(velocity, slow, friction, payload));
+            signals.iter_mut().for_each(|signal| _ = whiten(signal));
         }
         self.started = true;
     }
@@ -207,13 +155,7 @@ impl ContactTest {
             for ((value, torque), bias) in without_bias.iter_mut().zip(torque).zip(slow.bias()) {
                 *value = torque - bias;
             }
-            signal.statistic = match &mut free {
-                Some(free) => {
-                    let (left, taken) = free.leave(first + which, &mut signal.whitening, without_bias);
-                    left / signal.shares[taken]
-                }
-                None => signal.whitening.squared_norm(without_bias),
-            };
+            signal.evaluate(without_bias, first + which, free.as_deref_mut());
             if which == 0 {
                 for ((followed, left), bias) in followed.iter_mut().zip(&*without_bias).zip(slow.bias()) {
                     *followed = left + bias;
@@ -225,7 +167,7 @@ impl ContactTest {
             }
             // Errors that are not Gaussian widen the thresholds of single joints as much as that of the statistic.
             let widened = (signal.level / signal.gaussian_level).sqrt();
-            let deviations = signal.whitening.deviations();
+            let deviations = signal.deviations();
             let shares =
                 without_bias.iter().zip(deviations).map(|(torque, deviation)| (torque / deviation).abs());
             let largest = shares.clone().fold(0.0, f64::max);
@@ -242,14 +184,14 @@ impl ContactTest {
     fn forget_what_fell(&mut self) {
         let Self { bank: Some(bank), signals, slow, without_bias, .. } = self else { return };
         for slower in (0..signals.len().saturating_sub(1)).rev() {
-            let Signal { whitening, level, .. } = &mut signals[slower + 1];
+            let signal = &mut signals[slower + 1];
             let mut is_over = |which: usize| {
                 let torque = bank.torques()[which].iter().zip(slow.bias());
                 without_bias
                     .iter_mut()
                     .zip(torque)
                     .for_each(|(value, (torque, bias))| *value = torque - bias);
-                whitening.squared_norm(without_bias) > SUSPICIOUS * *level
+                signal.squared_norm(without_bias) > SUSPICIOUS * signal.level
             };
             if is_over(slower) && !is_over(slower + 1) {
                 bank.take_over(slower, slower + 1);
@@ -273,7 +215,7 @@ impl ContactTest {
         self.robot = Arc::clone(robot);
         self.payload.change(loads);
         // All covariances hold the change at once.
-        self.signals.iter_mut().for_each(|signal| signal.whitening.reset());
+        self.signals.iter_mut().for_each(Signal::restart);
         self.started = false;
     }
 
@@ -288,12 +230,12 @@ impl ContactTest {
         }
         let Some(signal) = signals.first() else { return (without_bias, deviations) };
         for (i, deviation) in deviations.iter_mut().enumerate() {
+            let share = signal.model_share(i);
             let slow = match before {
-                Some((_, age)) => slow.change(i, signal.model[i], age),
-                None => slow.variance(i, signal.model[i]),
+                Some((_, age)) => slow.change(i, share, age),
+                None => slow.variance(i, share),
             };
-            let white = signal.torque[i] + velocity.row(i)[i] * signal.velocity[i].powi(2);
-            *deviation = (white + slow + signal.friction[i] * friction.shares()[i]).sqrt();
+            *deviation = (signal.fast_variance(i, velocity, friction) + slow).sqrt();
         }
         (without_bias, deviations)
     }
@@ -311,7 +253,7 @@ impl ContactTest {
     /// Leaves of the reported torque, free of bias, what is not in free directions.
     pub fn leave(&mut self, torque: &mut [f64], free: &mut FreeDirections) {
         if let Some(signal) = self.signals.first_mut() {
-            free.leave(0, &mut signal.whitening, torque);
+            free.leave(0, signal.whitening_mut(), torque);
         }
     }
 
@@ -357,10 +299,7 @@ impl ContactTest {
         if let Some(bank) = &mut self.bank {
             bank.reset();
         }
-        self.signals.iter_mut().for_each(|signal| {
-            signal.statistic = 0.0;
-            signal.whitening.reset();
-        });
+        self.signals.iter_mut().for_each(Signal::reset);
         self.velocity.reset();
         self.slow.reset();
         self.friction.reset();

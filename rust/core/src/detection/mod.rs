@@ -9,9 +9,11 @@ mod gate;
 mod payload_errors;
 mod recent_torque;
 mod release;
+mod signal;
 mod signal_tree;
 mod slow_errors;
 mod velocity_covariance;
+mod white_noise;
 mod whitening;
 
 pub(crate) use contact_test::{ContactTest, Level, FOLLOW_TIME, GAINS, LARGEST_STEP};

@@ -64,6 +64,11 @@ impl Whitening {
         true
     }
 
+    /// Whether the next work begins a covariance.
+    pub fn at_start(&self) -> bool {
+        self.next == 0
+    }
+
     /// Starts anew with the next covariance.
     pub fn reset(&mut self) {
         (self.next, self.started) = (0, false);

@@ -6,8 +6,10 @@ use super::bias::BiasTracker;
 use super::clock::SampleClock;
 use super::limits::JointLimits;
 use super::options::MonitorOptions;
+use super::recent_motion::RecentMotion;
 use super::report::ContactReport;
 use super::sensing::Sensing;
+use super::settings::{of_observer, scale_of};
 use super::source::{signal_of, Source};
 use super::tare::RestReadings;
 use crate::detection::{ContactTest, Detector, FreeDirections, Load, ReleaseDetector, Whitening};
@@ -58,6 +60,7 @@ pub struct ContactMonitor {
     /// What was tared where no bias is followed.
     pub(super) fixed_bias: Option<Vec<f64>>,
     pub(super) rest: RestReadings,
+    pub(super) recent: RecentMotion,
     /// Of all joints at once, with a bias of its own; none where each joint has a threshold.
     pub(super) test: Option<ContactTest>,
     /// Of each joint (Nm, N).
@@ -132,6 +135,7 @@ impl ContactMonitor {
             bias: options.bias_time_constant.filter(|_| test.is_none()).map(bias_tracker).transpose()?,
             fixed_bias: None,
             rest: RestReadings::new(nv, sensors),
+            recent: RecentMotion::new(robot.nq(), nv),
             free: FreeDirections::new(
                 &robot,
                 &options.wanted_points,
@@ -184,6 +188,7 @@ impl ContactMonitor {
         let new = self.clock.started() && !step.is_gap();
         self.limits.set_configuration(sample.q);
         self.observer.advance(sample, step);
+        self.note_motion(sample.q, step);
         self.clock.accept(sample.dt);
         self.sense(sample.wrenches, step);
         Ok(self.judge(step, new))
@@ -340,6 +345,7 @@ impl ContactMonitor {
         self.report.remainder_learned = false;
         self.release.reset();
         self.rest.reset();
+        self.recent.reset();
         self.fixed_bias = None;
         if let Some(bias) = &mut self.bias {
             bias.reset();
@@ -380,23 +386,5 @@ impl ContactMonitor {
     /// The robot watched, with its payload.
     pub fn robot(&self) -> &Arc<Robot> {
         &self.robot
-    }
-}
-
-/// Thresholds `(nv,)` as a covariance.
-pub(super) fn scale_of(threshold: &[f64]) -> Whitening {
-    let mut scale = Whitening::new(threshold.len());
-    scale.advance(|i, row| {
-        row.fill(0.0);
-        row[i] = threshold[i] * threshold[i];
-    });
-    scale
-}
-
-/// An error of the observer's gain, by its name here.
-pub(super) fn of_observer(error: Error) -> Error {
-    match error {
-        Error::Input { argument, problem } if argument == "gain" => Error::input("observer_gain", problem),
-        other => other,
     }
 }

@@ -47,6 +47,7 @@ impl ContactMonitor {
         let step = self.clock.step(sample.dt);
         self.limits.set_configuration(sample.q);
         self.observer.follow(sample, step.is_gap() || !self.clock.started());
+        self.note_motion(sample.q, step);
         self.clock.accept(sample.dt);
         self.sense(sample.wrenches, step);
         let known = if step.is_gap() { Step::Of(step.length(self.clock.dt())) } else { step };

@@ -8,6 +8,9 @@ mod judgement;
 mod limits;
 mod options;
 mod payload;
+mod payload_fit;
+mod payload_proposal;
+mod recent_motion;
 mod report;
 mod sensing;
 mod settings;
@@ -16,4 +19,5 @@ mod tare;
 
 pub use contact_monitor::ContactMonitor;
 pub use options::MonitorOptions;
+pub use payload_proposal::PayloadProposal;
 pub use report::ContactReport;

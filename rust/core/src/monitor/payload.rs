@@ -61,6 +61,7 @@ impl ContactMonitor {
         if let Some(test) = &mut self.test {
             test.set_robot(&robot, [self.payload, payload]);
         }
+        self.recent.reset();
         self.robot = robot;
         self.payload = payload;
     }

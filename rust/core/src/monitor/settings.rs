@@ -2,10 +2,9 @@
 
 use nalgebra::Vector6;
 
-use super::contact_monitor::{of_observer, scale_of};
 use super::source::Source;
 use super::{ContactMonitor, MonitorOptions};
-use crate::detection::check_wrench_threshold;
+use crate::detection::{check_wrench_threshold, Whitening};
 use crate::error::{Error, Result};
 use crate::isolation::{ContactIsolator, IsolatorOptions};
 use crate::sensor::SensorTree;
@@ -116,5 +115,23 @@ impl ContactMonitor {
             sensing.follow_without_lag();
         }
         Ok(())
+    }
+}
+
+/// Thresholds `(nv,)` as a covariance.
+pub(super) fn scale_of(threshold: &[f64]) -> Whitening {
+    let mut scale = Whitening::new(threshold.len());
+    scale.advance(|i, row| {
+        row.fill(0.0);
+        row[i] = threshold[i] * threshold[i];
+    });
+    scale
+}
+
+/// An error of the observer's gain, by its name here.
+pub(super) fn of_observer(error: Error) -> Error {
+    match error {
+        Error::Input { argument, problem } if argument == "gain" => Error::input("observer_gain", problem),
+        other => other,
     }
 }

@@ -131,8 +131,10 @@ impl MomentumObserver {
         self.velocity.copy_from_slice(v);
         spread_torque(tau, &mut self.motor_torque);
         if let Some(calibration) = &mut self.calibration {
-            if step.is_gap() || !self.started {
+            if !self.started {
                 calibration.reset();
+            } else if step.is_gap() {
+                calibration.bridge_gap();
             }
             let length = if self.started { step.length(self.dt) } else { 0.0 };
             calibration.correct(length, &mut self.velocity, &mut self.motor_torque);
