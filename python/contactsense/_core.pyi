@@ -1335,6 +1335,9 @@ class ContactIsolator:
         locate_within: A contact is located if 90 % of the places that explain the torques are within this distance of
             its point [m].
         calibration: A `Calibration` of this robot, whose noise takes the place of `noise`.
+        samples: Samples of the surface from which the posterior of a single contact is worked out, as `ContactMap` does, where the
+            standard deviation of a torque is 3 mNm or more; 0 for closed forms only. Not with sensors, pulls or a floating base.
+        pull_probability: Probability that a contact pulls on the surface, for this posterior.
 
     Raises:
         InputError: Names the argument.
