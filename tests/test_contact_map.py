@@ -49,7 +49,7 @@ def same(one: cs.MapEstimate, other: cs.MapEstimate) -> bool:
     return repr(one.to_dict()) == repr(other.to_dict())
 
 
-@pytest.mark.parametrize("name", ["iiwa14", "panda"])
+@pytest.mark.parametrize("name", ["iiwa14", "panda", "atlas"])
 def test_regions_and_link_probabilities_are_calibrated_on_contacts_from_the_prior(name: str) -> None:
     robot = robot_named(name)
     rng = np.random.default_rng(7)
@@ -95,6 +95,24 @@ def test_the_posterior_of_samples_is_that_of_an_integral_over_the_force(link: st
         errors += list(np.abs(error - np.median(error)))
     assert np.median(errors) < 0.5
     assert np.percentile(errors, 80) < 2.0
+
+
+@pytest.mark.parametrize("torque", [0.1, 0.02])
+def test_how_many_samples_there_are_hardly_matters(torque: float) -> None:
+    rng = np.random.default_rng(11)
+    areas = reference.area_shares(arm())
+    noise = cs.NoiseModel(torque=torque, model=0.0, relative=0.0)
+    few, many = (cs.ContactMap(arm(), samples=samples, noise=noise) for samples in (500, 20_000))
+    links, evidence = [], []
+    for _ in range(40):
+        truth = reference.draw(arm(), rng, areas, forces=(5.0, 60.0))
+        measured = truth.torque + torque * rng.standard_normal(7)
+        one, other = few.evaluate(truth.q, measured), many.evaluate(truth.q, measured)
+        links.append(max(abs(one.link_probabilities[k] - other.link_probabilities[k]) for k in areas))
+        evidence.append(abs(one.log_evidence - other.log_evidence))
+    assert np.median(links) < 0.05
+    assert np.percentile(links, 90) < 0.15
+    assert np.median(evidence) < 0.6
 
 
 def test_shares_of_the_samples_sum_to_one() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import map_reference
 import numpy as np
 import pytest
 from robots import BY_NAME
@@ -137,3 +138,35 @@ def test_contacts_that_are_left_out_are_said() -> None:
     assert cs.ContactIsolator(robot, max_contacts=2).isolate(q, tau).truncated
     push = push_torque(robot, q, "l_hand", robot.link_pose(q, "l_hand")[:3, 3], np.array([10.0, -20.0, 15.0]))
     assert not cs.ContactIsolator(robot, max_contacts=2).isolate(q, push).truncated
+
+
+@pytest.mark.parametrize("name", ["iiwa14", "panda"])
+def test_noisy_pushes_on_an_arm_are_located_by_the_posterior_and_rarely_wrong(name: str) -> None:
+    """Pushes of 10 to 60 N anywhere on the surface, 0.1 Nm on each joint, thresholds of 0.3 Nm."""
+    robot = robot_named(name)
+    rng = np.random.default_rng(6)
+    areas = map_reference.area_shares(robot)
+    isolators = {
+        samples: cs.ContactIsolator(robot, torque_threshold=0.3, samples=samples) for samples in (0, 1000)
+    }
+    located, wrong, right = (
+        dict.fromkeys(isolators, 0),
+        dict.fromkeys(isolators, 0),
+        dict.fromkeys(isolators, 0),
+    )
+    for _ in range(400):
+        truth = map_reference.draw(robot, rng, areas, forces=(10.0, 60.0), friction=0.3, pull_probability=0.0)
+        measured = truth.torque + 0.1 * rng.standard_normal(robot.nv)
+        for samples, isolator in isolators.items():
+            contacts = isolator.isolate(truth.q, measured).contacts
+            if not contacts:
+                continue
+            contact = contacts[0]
+            right[samples] += contact.link == truth.link
+            if contact.located:
+                located[samples] += 1
+                error = np.linalg.norm(contact.point - truth.point)
+                wrong[samples] += error > 0.01 + 3.0 * contact.point_std
+    assert located[1000] > max(2 * located[0], 50)
+    assert wrong[1000] <= 0.03 * located[1000]
+    assert right[1000] > right[0] + 20

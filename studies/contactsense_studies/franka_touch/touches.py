@@ -54,7 +54,7 @@ def judge(robot: Robot, log: TouchLog, told: Replay, settings: Settings, tuning:
     onsets = log.time[told.onset]
     claimed = np.zeros(len(onsets), dtype=bool)
     free = np.ones(len(log.time), dtype=bool)
-    isolator = ContactIsolator(robot, torque_threshold=settings.isolation_threshold)
+    isolator = ContactIsolator(robot, torque_threshold=settings.isolation_threshold, samples=0)
     results = []
     for first, last in log.touches:
         start, end = float(log.time[first]), float(log.time[last])
