@@ -152,9 +152,14 @@ impl SurfaceContact {
         own.left_over(link.get(), point, force, left)
     }
 
-    /// Judges what closed forms found of a torque: the point of a contact that they do not determine stays open unless the posterior is
-    /// sure of it.
+    /// Judges what closed forms found of a torque: the point of a contact that they do not determine stays open unless the
+    /// posterior is sure of it.
     pub fn judge(&mut self, now: &TorqueNow<'_>, isolation: &mut Isolation) {
+        let found = match &isolation.contacts[..] {
+            [] => return,
+            [found] if !found.located => Some(found.clone()),
+            _ => None,
+        };
         let exact = |contact: &Contact| contact.verified;
         if isolation.contacts.iter().all(exact) && is_exact(isolation.residual, now.torque) {
             return;
@@ -164,11 +169,6 @@ impl SurfaceContact {
         while !self.is_done() {
             self.step();
         }
-        let found = match &isolation.contacts[..] {
-            [] => return,
-            [found] if !found.located => Some(found.clone()),
-            _ => None,
-        };
         if !self.summary.estimate().explained {
             return;
         }
