@@ -30,7 +30,10 @@ mod wrench;
 mod wrench_rows;
 
 pub use isolator::ContactIsolator;
+#[cfg(feature = "serde")]
+pub(crate) use options::samples;
 pub use options::IsolatorOptions;
+pub(crate) use options::SAMPLES;
 pub use posterior::{ContactPosterior, LinkProbability, Track};
 pub use result::{Candidate, Contact, ContactPlace, Isolation};
 pub(crate) use surface_contact::{SurfaceContact, TorqueNow};

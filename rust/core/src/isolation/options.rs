@@ -61,14 +61,14 @@ pub struct IsolatorOptions {
 }
 
 /// Enough for centimetres on an arm: pieces that matter are divided.
-const SAMPLES: usize = 1000;
+pub(crate) const SAMPLES: usize = 1000;
 
 /// Torques with a smaller standard deviation than any sensor's are simulated (Nm): closed forms use all that they tell, and samples
 /// of the surface would have to be finer than it is.
 const IDEAL: f64 = 3e-3;
 
 #[cfg(feature = "serde")]
-fn samples() -> usize {
+pub(crate) fn samples() -> usize {
     SAMPLES
 }
 

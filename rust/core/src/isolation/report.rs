@@ -14,8 +14,8 @@ use crate::spatial::vector::stack;
 
 /// One of several contacts is located if its point's standard deviation is less (m).
 const SHARP: f64 = 0.01;
-/// Unknowns of a force on a line of action.
-const LINE_UNKNOWNS: usize = 5;
+/// Unknowns of a force on a line of action: a contact is checked only by torques beyond these.
+pub(super) const LINE_UNKNOWNS: usize = 5;
 /// Root mean square of the distance from one of two equally likely places, as a share of the distance between them.
 const EQUALLY_LIKELY: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Solutions whose points are nearer than this agree (m).

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use super::posterior::{ContactPosterior, LinkProbability};
+use super::report::LINE_UNKNOWNS;
 use super::result::{Contact, ContactPlace, Isolation};
 use crate::error::Result;
 use crate::map::{MapOptions, Measurement, Summary, SurfacePosterior};
@@ -22,8 +23,6 @@ const LOST: f64 = 20.5;
 const DETERMINED: f64 = 2.0;
 /// A closed form gives a contact's point if that is not farther from the posterior's than its region's radius, or this (m).
 const AGREES: f64 = 0.01;
-/// Unknowns of a force on a line of action: a contact is checked only by torques beyond these.
-const LINE_UNKNOWNS: usize = 5;
 
 /// A torque with its standard deviations.
 #[derive(Debug, Clone, Copy)]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::calibration::Calibration;
 use crate::detection::{ContactTest, ReleaseRule, FOLLOW_TIME};
 use crate::error::{Error, Result};
-use crate::isolation::IsolatorOptions;
+use crate::isolation::{IsolatorOptions, SAMPLES};
 use crate::robot::Robot;
 use crate::torque::TorqueNoise;
 use crate::tracking::ContactTracker;
@@ -63,16 +63,8 @@ pub struct MonitorOptions {
     pub hysteresis: Vec<f64>,
     /// Samples of the surface by which the place of a contact is found where closed forms do not determine it; zero for closed
     /// forms only. Of arms without sensors and wanted points.
-    #[cfg_attr(feature = "serde", serde(default = "samples"))]
+    #[cfg_attr(feature = "serde", serde(default = "crate::isolation::samples"))]
     pub samples: usize,
-}
-
-/// Enough for centimetres on an arm: pieces that matter are divided.
-const SAMPLES: usize = 1000;
-
-#[cfg(feature = "serde")]
-fn samples() -> usize {
-    SAMPLES
 }
 
 /// A bias of more thresholds than this is taken for a fault of the set-up: a wrong sign of `tau`, a missing tool. Real arms

@@ -5,6 +5,7 @@ use nalgebra::{Matrix2, Matrix6x2, Matrix6x3, Vector2, Vector3};
 use super::force_model::directions;
 use super::frames::Frame;
 use super::link_target::LinkTarget;
+use super::push_likelihood::NO_FRICTION;
 use crate::spatial::vector::stack;
 
 /// Normal equations of a displacement along the surface, from which the force of the contact is eliminated.
@@ -79,6 +80,3 @@ impl PlaceStep {
         displacement.iter().all(|x| x.is_finite()).then_some(displacement)
     }
 }
-
-/// Precision of the force across the normal where there is no friction (1/N^2).
-const NO_FRICTION: f64 = 1e24;

@@ -16,7 +16,7 @@ const PASSES: usize = 2;
 /// A point that no torque shows has a gain of zero, by which nothing is divided.
 const LEAST_GAIN: f64 = 1e-30;
 /// Precision of the force across the normal where there is no friction (1/N^2).
-const NO_FRICTION: f64 = 1e24;
+pub(super) const NO_FRICTION: f64 = 1e24;
 
 type Lanes3 = [f64x4; 3];
 
