@@ -5,6 +5,7 @@ use std::sync::Arc;
 use nalgebra::Vector6;
 
 use super::body_set::BodySet;
+use super::contact_evidence::ContactEvidence;
 use super::found::Scene;
 use super::line::LineCast;
 use super::options::IsolatorOptions;
@@ -89,7 +90,7 @@ pub struct ContactIsolator {
     pub(super) line: LineCast,
     rows: TorqueRows,
     pub(super) several: SeveralContacts,
-    surface: Option<SurfaceContact>,
+    surface: Option<(ContactEvidence, SurfaceContact)>,
     pub(super) near: Vec<LinkIndex>,
     /// By body: cannot carry the contact that is being judged.
     pub(super) excluded: Vec<bool>,
@@ -119,6 +120,7 @@ impl ContactIsolator {
         let tree = SensorTree::new(&robot, &options.sensors)?;
         let wrench_threshold = check_wrench_threshold(&tree, &options.wrench_threshold)?;
         let wanted = tree.wanted(&options.wanted_contacts)?;
+        let surface = options.surface(&robot, (&tree, &wanted), &wrench_threshold, &noise)?;
         let (nv, links) = (robot.nv(), robot.links().len());
         // More than a contact a link cannot be told apart.
         let max_contacts = options.max_contacts.min(links.max(1));
@@ -142,7 +144,7 @@ impl ContactIsolator {
             line: LineCast::new(),
             rows: TorqueRows::new(&robot),
             several: SeveralContacts::new(&robot, max_contacts),
-            surface: options.surface(&robot, &noise)?,
+            surface,
             near: Vec::with_capacity(links),
             excluded: vec![false; robot.body_count()],
             displaced: Vec::with_capacity(CANDIDATES),
@@ -181,10 +183,14 @@ impl ContactIsolator {
         let mut kinematics = std::mem::replace(&mut self.kinematics, Kinematics::empty());
         kinematics.set_configuration(&self.robot, q);
         self.isolate_at(&kinematics, tau_ext, wrenches, None);
-        if let Some(surface) = &mut self.surface {
-            let deviation = self.noise.at_rest();
-            let now = TorqueNow { kinematics: &kinematics, torque: tau_ext, deviation };
+        if let Some((evidence, surface)) = &mut self.surface {
+            let tree = &self.regions.tree;
+            let torque = (tau_ext, self.noise.at_rest());
+            evidence.set(&self.robot, &kinematics, tree, torque, wrenches);
+            let ContactEvidence { value, deviation, .. } = evidence;
+            let now = TorqueNow { kinematics: &kinematics, torque: value, deviation };
             surface.judge(&now, &mut self.isolation);
+            self.isolation.name_sources(tree);
         }
         self.kinematics = kinematics;
         Ok(&self.isolation)

@@ -3,6 +3,7 @@
 mod body_set;
 mod caster;
 mod conics;
+mod contact_evidence;
 mod force;
 mod found;
 mod isolator;
@@ -29,6 +30,7 @@ mod work;
 mod wrench;
 mod wrench_rows;
 
+pub(crate) use contact_evidence::{ContactEvidence, LEFT_OUT};
 pub use isolator::ContactIsolator;
 #[cfg(feature = "serde")]
 pub(crate) use options::samples;

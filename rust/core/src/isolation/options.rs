@@ -2,12 +2,15 @@
 
 use std::sync::Arc;
 
+use nalgebra::Vector6;
+
+use super::contact_evidence::ContactEvidence;
 use super::surface_contact::SurfaceContact;
 use crate::detection::check_threshold;
 use crate::error::{Error, Result};
 use crate::map::MapOptions;
 use crate::robot::Robot;
-use crate::sensor::ForceTorqueSensor;
+use crate::sensor::{ForceTorqueSensor, SensorTree};
 use crate::torque::{NoiseModel, TorqueNoise, LEVEL};
 
 /// Default of [`IsolatorOptions::locate_within`]: about the width of a hand's contact (m).
@@ -115,19 +118,28 @@ impl IsolatorOptions {
         Ok((given.unwrap_or_else(|| noise.threshold()), noise))
     }
 
-    /// What judges a contact by all surface; none where closed forms answer alone.
+    /// What judges a contact by all surface, with the evidence that it takes; none where closed forms answer alone.
     ///
     /// # Errors
     /// [`Error::Input`] names the option.
-    pub(super) fn surface(&self, robot: &Arc<Robot>, noise: &TorqueNoise) -> Result<Option<SurfaceContact>> {
+    pub(super) fn surface(
+        &self,
+        robot: &Arc<Robot>,
+        (tree, wanted): (&SensorTree, &[bool]),
+        wrench_threshold: &[Vector6<f64>],
+        noise: &TorqueNoise,
+    ) -> Result<Option<(ContactEvidence, SurfaceContact)>> {
         let Self { samples, pull_probability, .. } = *self;
-        let alone = self.sensors.is_empty() && self.pushing && !robot.floating_base();
         let ideal = noise.at_rest().iter().all(|deviation| *deviation < IDEAL);
-        if samples == 0 || !alone || ideal || !robot.has_contact_links() {
+        if samples == 0 || !self.pushing || ideal {
             return Ok(None);
         }
         let options = MapOptions { samples, pull_probability, ..MapOptions::default() };
-        SurfaceContact::new(Arc::clone(robot), &options, noise.clone(), self.locate_within).map(Some)
+        let evidence = ContactEvidence::new(robot, tree, wanted, wrench_threshold);
+        let sensed = (tree, &evidence);
+        let found =
+            SurfaceContact::new(Arc::clone(robot), &options, sensed, noise.clone(), self.locate_within)?;
+        Ok(found.map(|surface| (evidence, surface)))
     }
 
     /// # Errors

@@ -7,7 +7,7 @@ use nalgebra::{Vector3, Vector6};
 use super::posterior::{ContactPosterior, LinkProbability, Track};
 use crate::posterior::{Mode, MOST_MODES};
 use crate::robot::LinkIndex;
-use crate::sensor::SensorIndex;
+use crate::sensor::{SensorIndex, SensorTree};
 use crate::spatial::vector::split;
 
 /// All hits of one instant that are kept.
@@ -197,6 +197,13 @@ impl Isolation {
             modes: Vec::with_capacity(MOST_MODES),
             link_probabilities: Vec::with_capacity(links),
             ..Self::default()
+        }
+    }
+
+    /// Names the sensors that have seen contacts which the posterior found.
+    pub(crate) fn name_sources(&mut self, tree: &SensorTree) {
+        for contact in self.contacts.iter_mut().filter(|contact| contact.posterior.is_some()) {
+            contact.source = tree.of_link(contact.link.get()).map(SensorIndex::new);
         }
     }
 

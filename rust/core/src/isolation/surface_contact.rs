@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
+use super::contact_evidence::ContactEvidence;
 use super::posterior::{ContactPosterior, LinkProbability};
 use super::report::LINE_UNKNOWNS;
 use super::result::{Contact, ContactPlace, Isolation};
@@ -11,6 +12,7 @@ use crate::error::Result;
 use crate::map::{MapOptions, Measurement, Summary, SurfacePosterior};
 use crate::posterior::{Mode, MOST_MODES};
 use crate::robot::{Kinematics, LinkIndex, Robot};
+use crate::sensor::SensorTree;
 use crate::spatial::vector::stack;
 use crate::torque::{best_cone_force, directions, BestForce, ForceModel, TorqueNoise};
 
@@ -24,13 +26,13 @@ const DETERMINED: f64 = 2.0;
 /// A closed form gives a contact's point if that is not farther from the posterior's than its region's radius, or this (m).
 const AGREES: f64 = 0.01;
 
-/// A torque with its standard deviations.
+/// The rows of a measurement with their standard deviations.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TorqueNow<'a> {
     pub kinematics: &'a Kinematics,
-    /// External torque `(nv,)` (Nm, N).
+    /// External torque, then the wrenches of sensors (Nm, N).
     pub torque: &'a [f64],
-    /// Its standard deviations without contact (Nm, N).
+    /// Their standard deviations without contact (Nm, N).
     pub deviation: &'a [f64],
 }
 
@@ -56,30 +58,49 @@ pub(crate) struct SurfaceContact {
 }
 
 impl SurfaceContact {
+    /// Of torques with the noise of `noise`, and wrenches of sensors as `evidence` has them; none where no link is left to look on
+    /// that is not behind a wanted sensor.
+    ///
     /// # Errors
     /// [`crate::Error::Input`] names the option.
     pub fn new(
         robot: Arc<Robot>,
         options: &MapOptions,
+        (tree, evidence): (&SensorTree, &ContactEvidence),
         noise: TorqueNoise,
         locate_within: f64,
-    ) -> Result<Self> {
-        let wanted = options.check(&robot)?;
-        let posterior = SurfacePosterior::new(robot.clone(), options, &wanted)?;
-        Ok(SurfaceContact {
-            summary: Summary::new(&robot, wanted.len(), options.friction, &posterior),
-            links: wanted.iter().copied().map(LinkIndex::new).collect(),
+    ) -> Result<Option<Self>> {
+        if !robot.has_contact_links() {
+            return Ok(None);
+        }
+        let mut links = options.check(&robot)?;
+        links.retain(|link| !evidence.is_wanted(tree, *link));
+        if links.is_empty() {
+            return Ok(None);
+        }
+        let sensors = evidence.mounts(&robot, tree);
+        let posterior = SurfacePosterior::new(robot.clone(), options, &links, &sensors)?;
+        let now = Measurement::new(&robot, links.clone(), &sensors);
+        let rows = now.rows();
+        Ok(Some(SurfaceContact {
+            summary: Summary::new(rows, links.len(), options.friction, &posterior),
+            links: links.into_iter().map(LinkIndex::new).collect(),
             posterior,
-            noise,
+            noise: evidence.noise(noise),
             locate_within,
-            in_contact: vec![1.0; robot.nv()],
-            left: vec![0.0; robot.nv()],
+            in_contact: vec![1.0; rows],
+            left: vec![0.0; rows],
             place: None,
             modes: Vec::with_capacity(MOST_MODES),
-            now: Measurement::new(&robot, wanted),
+            now,
             friction: options.friction,
             robot,
-        })
+        }))
+    }
+
+    /// How many rows a measurement has.
+    pub fn rows(&self) -> usize {
+        self.now.rows()
     }
 
     /// Another contact: forgets the torques, but not the place until there is another one.
@@ -187,9 +208,8 @@ impl SurfaceContact {
         let Some(place) = self.place else { return };
         let found = self.summary.estimate();
         let (explained, region_radius) = (found.explained, found.region_radius.unwrap_or(f64::INFINITY));
-        let sensed = isolation.contacts.iter().any(|contact| contact.source.is_some());
         let several = isolation.contacts.len() > 1;
-        if sensed || (several && !explained) || (outdated && !isolation.contacts.is_empty()) {
+        if (several && !explained) || (outdated && !isolation.contacts.is_empty()) {
             return;
         }
         let point = now.kinematics.link_pose(&self.robot, place.link).transform_point(&place.point);
@@ -239,9 +259,14 @@ impl SurfaceContact {
                 std: covariance.trace().sqrt(),
             }),
             wrench: force.map(|force| stack(&force, &(point - pose.translation).cross(&force))),
-            verified: explained && self.robot.chain(self.robot[place.link].body).len() > LINE_UNKNOWNS,
+            verified: explained && self.feels(place.link) > LINE_UNKNOWNS,
             ..Contact::unlocated(place.link)
         }
+    }
+
+    /// How many rows feel a link.
+    fn feels(&self, link: LinkIndex) -> usize {
+        self.now.frames().links[link.get()].rows().len()
     }
 
     /// Lists modes and probabilities of links in the answer.

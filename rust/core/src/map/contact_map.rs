@@ -59,12 +59,12 @@ impl ContactMap {
     /// [`crate::Error::Input`] names the option.
     pub fn new(robot: Arc<Robot>, options: &MapOptions) -> Result<Self> {
         let wanted = options.check(&robot)?;
-        let posterior = SurfacePosterior::new(robot.clone(), options, &wanted)?;
+        let posterior = SurfacePosterior::new(robot.clone(), options, &wanted, &[])?;
         Ok(ContactMap {
             noise: options.noise.of(&robot)?,
             kinematics: Kinematics::new(&robot),
             deviation: vec![1.0; robot.nv()],
-            summary: Summary::new(&robot, wanted.len(), options.friction, &posterior),
+            summary: Summary::new(robot.nv(), wanted.len(), options.friction, &posterior),
             posterior,
             wanted,
             robot,

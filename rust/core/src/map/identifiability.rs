@@ -119,7 +119,7 @@ impl ContactMap {
         let [along, across] = self.posterior.prior.deviations(force);
         // In units of the prior's deviations; and in units that have nothing to do with what is known beforehand.
         let (mut known, mut free) = (Triangle::identity(), Triangle::empty());
-        for (axis, &k) in frame.variables().iter().enumerate() {
+        for (axis, &k) in frame.rows().iter().enumerate() {
             let [a, b, c, d, e] = derivatives.of(axis).map(|torque| torque / torques.deviation[k]);
             let [u, v] = [0, 1].map(|column| d * root[(0, column)] + e * root[(1, column)]);
             known.add([a * along, b * across, c * across, u, v]);
@@ -179,7 +179,7 @@ impl Torques {
     /// Sets the torques of the joints that move a link; the others feel nothing.
     fn set(&mut self, frame: &Frame, of_axis: impl Fn(usize) -> f64) {
         self.torque.fill(0.0);
-        frame.variables().iter().enumerate().for_each(|(axis, &k)| self.torque[k] = of_axis(axis));
+        frame.rows().iter().enumerate().for_each(|(axis, &k)| self.torque[k] = of_axis(axis));
     }
 
     /// The norm of the torques over deviations.

@@ -1,18 +1,19 @@
-//! One measured torque at one pose, and what it says of contacts at points of the surface.
+//! One measured torque at one pose, with the wrenches of sensors where there are any, and what they say of contacts at points
+//! of the surface.
 
 use nalgebra::Vector3;
 
 use crate::robot::{Kinematics, Robot};
-use crate::torque::{ForcePrior, Frames, PlaceBlock, PushLikelihood, Target};
+use crate::torque::{ForcePrior, Frames, PlaceBlock, PushLikelihood, SensorMount, Target, WRENCH};
 
-/// A torque at a pose.
+/// A torque at a pose. Its rows are the velocity variables, then the components of the sensors' wrenches.
 #[derive(Debug, Clone)]
 pub(crate) struct Measurement {
     torque: Vec<f64>,
     /// Its stated standard deviation, and the one it is weighed with (Nm, N).
     stated: Vec<f64>,
     deviation: Vec<f64>,
-    /// By velocity variable: whether its torque is a force.
+    /// By row: whether it is a force.
     is_force: Vec<bool>,
     /// Without weights, and by the deviations.
     plain: Frames,
@@ -21,20 +22,23 @@ pub(crate) struct Measurement {
 }
 
 impl Measurement {
-    pub fn new(robot: &Robot, wanted: Vec<usize>) -> Self {
-        let frames = Frames::new(robot, wanted);
+    pub fn new(robot: &Robot, wanted: Vec<usize>, sensors: &[SensorMount]) -> Self {
+        let frames = Frames::with_sensors(robot, wanted, sensors);
+        let mut is_force = robot.forces();
+        is_force.extend((0..WRENCH * sensors.len()).map(|i| i % WRENCH < 3));
+        let rows = is_force.len();
         Measurement {
-            torque: vec![0.0; robot.nv()],
-            stated: vec![1.0; robot.nv()],
-            deviation: vec![1.0; robot.nv()],
-            is_force: robot.forces(),
+            torque: vec![0.0; rows],
+            stated: vec![1.0; rows],
+            deviation: vec![1.0; rows],
+            is_force,
             target: Target::new(&frames),
             plain: frames.clone(),
             frames,
         }
     }
 
-    /// Takes on a pose, and a torque there with its standard deviations.
+    /// Takes on a pose, and the rows measured there with their standard deviations.
     pub fn set(&mut self, robot: &Robot, kinematics: &Kinematics, torque: &[f64], stated: &[f64]) {
         self.torque.copy_from_slice(torque);
         self.stated.copy_from_slice(stated);
@@ -59,7 +63,7 @@ impl Measurement {
         self.set(robot, kinematics, torque, stated);
     }
 
-    /// Weighs the torques of joints that turn with another standard deviation beside the stated one (Nm).
+    /// Weighs torques and moments with another standard deviation beside the stated one (Nm).
     pub fn blur(&mut self, more: f64) {
         for ((deviation, stated), is_force) in self.deviation.iter_mut().zip(&self.stated).zip(&self.is_force)
         {
@@ -79,7 +83,12 @@ impl Measurement {
         &self.stated
     }
 
-    /// Squared norm of the torques of the joints that move a link, in standard deviations.
+    /// How many rows there are.
+    pub fn rows(&self) -> usize {
+        self.torque.len()
+    }
+
+    /// Squared norm of the rows that feel a link, in standard deviations.
     pub fn felt(&self, link: usize) -> f64 {
         self.target.on(link).torque.iter().map(|torque| torque * torque).sum()
     }
@@ -89,7 +98,7 @@ impl Measurement {
         -0.5 * self.target.squared - self.deviation.iter().map(|deviation| deviation.ln()).sum::<f64>()
     }
 
-    /// Squared norm, over all joints, of the torque that a force at a point of a link leaves over, in standard deviations (point
+    /// Squared norm, over all rows, of the torque that a force at a point of a link leaves over, in standard deviations (point
     /// and force in the link's frame); `left` is memory for as many numbers.
     pub fn left_over(
         &self,

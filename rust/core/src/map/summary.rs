@@ -4,7 +4,6 @@ use super::estimate::MapEstimate;
 use super::surface_posterior::SurfacePosterior;
 use crate::math::chi_square::upper_limit;
 use crate::posterior::{ContactEstimate, MOST_MODES};
-use crate::robot::Robot;
 use crate::torque::{BestForce, ForceModel};
 
 /// Share of the posterior that a region holds.
@@ -23,11 +22,12 @@ pub(crate) struct Summary {
 }
 
 impl Summary {
-    pub fn new(robot: &Robot, links: usize, friction: f64, posterior: &SurfacePosterior) -> Self {
+    /// For so many rows of a measurement, and links that are looked on.
+    pub fn new(rows: usize, links: usize, friction: f64, posterior: &SurfacePosterior) -> Self {
         Summary {
             friction: ForceModel::FrictionCone(friction),
             distances: Vec::with_capacity(posterior.most_pieces()),
-            left: vec![0.0; robot.nv()],
+            left: vec![0.0; rows],
             found: MapEstimate {
                 estimate: ContactEstimate::new(links, MOST_MODES),
                 region_radius: None,
@@ -52,7 +52,7 @@ impl Summary {
         found.estimate.set(&posterior.clusters, frames, 0.0);
         found.effective_samples = posterior.effective;
         found.log_evidence = posterior.log_evidence();
-        let joints = self.left.len();
+        let rows = self.left.len();
         let mut misfit = f64::INFINITY;
         for mode in &found.estimate.modes {
             let frame = &frames.links[mode.link.get()];
@@ -62,8 +62,8 @@ impl Summary {
             let best = BestForce::of(frame, target, self.friction, &mode.point, &normal);
             misfit = misfit.min(measurement.left_over(link, &mode.point, &best.force, &mut self.left));
         }
-        found.residual = if misfit.is_finite() { (misfit / joints as f64).sqrt() } else { 0.0 };
-        found.explained = misfit <= upper_limit(joints);
+        found.residual = if misfit.is_finite() { (misfit / rows as f64).sqrt() } else { 0.0 };
+        found.explained = misfit <= upper_limit(rows);
         found.region_radius = found.estimate.contact.map(|contact| contact.point).map(|point| {
             self.distances.clear();
             for (leaf, weight) in posterior.leaves.iter().zip(&posterior.weights) {

@@ -14,7 +14,7 @@ use crate::error::Result;
 use crate::posterior::resampling::normalise;
 use crate::posterior::Clusters;
 use crate::robot::{Kinematics, Robot};
-use crate::torque::{ForcePrior, PlaceBlock, PushLikelihood, LANES};
+use crate::torque::{ForcePrior, PlaceBlock, PushLikelihood, SensorMount, LANES};
 
 /// More measurements of one contact than this are not kept.
 const MOST_MEASUREMENTS: usize = 4;
@@ -90,12 +90,17 @@ pub(crate) struct SurfacePosterior {
 impl SurfacePosterior {
     /// # Errors
     /// [`crate::Error::Input`] names the option.
-    pub fn new(robot: Arc<Robot>, options: &MapOptions, wanted: &[usize]) -> Result<Self> {
+    pub fn new(
+        robot: Arc<Robot>,
+        options: &MapOptions,
+        wanted: &[usize],
+        sensors: &[SensorMount],
+    ) -> Result<Self> {
         let samples = SurfaceSamples::new(&robot, wanted, options.samples)?;
         let most = 2 * samples.count + MOST_LEVELS * 2 * MOST_DIVIDED * LANES;
         Ok(SurfacePosterior {
             prior: options.prior(),
-            measurements: vec![Measurement::new(&robot, wanted.to_vec()); MOST_MEASUREMENTS],
+            measurements: vec![Measurement::new(&robot, wanted.to_vec(), sensors); MOST_MEASUREMENTS],
             count: 0,
             found: vec![PushLikelihood::none(0.0); samples.links.iter().map(|link| link.blocks.len()).sum()],
             likely: Vec::with_capacity(samples.links.len()),

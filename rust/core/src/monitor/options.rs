@@ -3,10 +3,12 @@
 use std::sync::Arc;
 
 use crate::calibration::Calibration;
-use crate::detection::{ContactTest, ReleaseRule, FOLLOW_TIME};
+use crate::detection::{check_wrench_threshold, ContactTest, ReleaseRule, FOLLOW_TIME};
 use crate::error::{Error, Result};
-use crate::isolation::{IsolatorOptions, SAMPLES};
+use crate::isolation::{ContactEvidence, IsolatorOptions, SurfaceContact, SAMPLES};
+use crate::map::MapOptions;
 use crate::robot::Robot;
+use crate::sensor::SensorTree;
 use crate::torque::TorqueNoise;
 use crate::tracking::ContactTracker;
 
@@ -124,19 +126,33 @@ impl MonitorOptions {
         }))
     }
 
-    /// What finds places of contacts by samples of the surface, with the noise of the torques. Torques that sensors or wanted
-    /// points share are left to closed forms, and so are those of a floating base, which are far more exact than samples are
-    /// close.
+    /// What finds places of contacts by samples of the surface, with the noise of the torques and wrenches. Torques that wanted
+    /// points share are left to closed forms.
     ///
     /// # Errors
     /// [`Error::Input`] names the option.
-    pub(super) fn tracker(&self, robot: &Arc<Robot>, noise: &TorqueNoise) -> Result<Option<ContactTracker>> {
-        let shared = !self.isolation.sensors.is_empty() || !self.wanted_points.is_empty();
-        if self.samples == 0 || shared || robot.floating_base() || !robot.has_contact_links() {
+    pub(super) fn tracker(
+        &self,
+        robot: &Arc<Robot>,
+        sensors: (&SensorTree, &[bool]),
+        noise: &TorqueNoise,
+    ) -> Result<Option<(ContactEvidence, ContactTracker)>> {
+        if self.samples == 0 || !self.wanted_points.is_empty() {
             return Ok(None);
         }
-        let noise = noise.clone();
-        ContactTracker::new(Arc::clone(robot), self.samples, noise, self.isolation.locate_within).map(Some)
+        let (tree, wanted) = sensors;
+        let options = MapOptions { samples: self.samples, ..MapOptions::default() };
+        let wrench_threshold = check_wrench_threshold(tree, &self.isolation.wrench_threshold)?;
+        let evidence = ContactEvidence::new(robot, tree, wanted, &wrench_threshold);
+        let locate_within = self.isolation.locate_within;
+        let surface = SurfaceContact::new(
+            Arc::clone(robot),
+            &options,
+            (tree, &evidence),
+            noise.clone(),
+            locate_within,
+        )?;
+        Ok(surface.map(|surface| (evidence, ContactTracker::new(surface))))
     }
 
     /// With the noise and the offsets of sensors of the calibration, and thresholds for its rate of false alarms, where none

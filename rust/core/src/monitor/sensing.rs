@@ -8,8 +8,7 @@ use crate::error::Result;
 use crate::observer::WrenchObserver;
 use crate::observer::{MomentumObserver, Step};
 use crate::robot::{Kinematics, Robot};
-use crate::sensor::{check_readings, SensorTree};
-use crate::spatial::vector::moved;
+use crate::sensor::{check_readings, exclude_wanted, leave_out_blind, SensorTree};
 
 /// A wanted sensor that comes back is trusted after so many time constants of the observer, which by then has
 /// forgotten what the sensor missed of a force that came and went.
@@ -51,11 +50,7 @@ impl Sensing {
     ) -> Result<Self> {
         let is_wanted = tree.wanted(wanted)?;
         let mut behind_wanted = vec![false; gain.len()];
-        for body in 1..robot.body_count() {
-            if tree.at_joint(body).is_some_and(|sensor| is_wanted[sensor]) {
-                behind_wanted[robot.velocity_range(body)].fill(true);
-            }
-        }
+        leave_out_blind(robot, &tree, &is_wanted, |_| true, &mut behind_wanted);
         Ok(Self {
             wrenches: WrenchObserver::new(robot.clone(), &tree, gain, wrench_gain, dt)?,
             settling_time: settling_time(gain),
@@ -186,68 +181,28 @@ impl Sensing {
         self.trusted.fill(Some(Vector6::zeros()));
     }
 
-    /// Joints that a wanted contact may load unmeasured: on the chain of a wanted sensor without a settled reading,
-    /// and behind a wanted sensor.
+    /// Joints that a wanted contact may load unmeasured.
     fn find_blind(&mut self, robot: &Robot, threshold: &[f64], dt: f64) {
-        self.blind.copy_from_slice(&self.behind_wanted);
-        for sensor in 0..self.tree.len() {
-            if !self.wanted[sensor] {
-                continue;
-            }
+        for sensor in (0..self.tree.len()).filter(|sensor| self.wanted[*sensor]) {
             let unsettled = &mut self.unsettled[sensor];
             *unsettled = if self.tree.is_active(sensor) { *unsettled - dt } else { self.settling_time };
             let mut unobserved = self.wrenches.unobserved_torque(sensor).iter().zip(threshold);
             self.settled[sensor] =
                 *unsettled <= 0.0 && unobserved.all(|(torque, threshold)| *torque <= UNOBSERVED * threshold);
-            if !self.settled[sensor] {
-                for &body in robot.chain(self.tree.body(sensor)) {
-                    self.blind[robot.velocity_range(body)].fill(true);
-                }
-            }
         }
+        let Self { tree, wanted, settled, blind, .. } = self;
+        leave_out_blind(robot, tree, wanted, |sensor| settled[sensor], blind);
     }
 
     /// Eq. 20 for the torque, and the same for the wrenches of sensors nearer to the base.
     fn exclude(&mut self, kinematics: &Kinematics) {
-        self.wanted_torque.fill(0.0);
-        for (unwanted, external) in self.unwanted.iter_mut().zip(self.wrenches.external()) {
-            *unwanted = *external;
-        }
-        for sensor in 0..self.tree.len() {
-            if !self.wanted[sensor] {
-                continue;
-            }
-            let trusted = self.settled[sensor];
-            let wrench = self.wrenches.external()[sensor];
-            let outermost = (0..self.tree.len()).all(|other| {
-                other == sensor
-                    || !self.wanted[other]
-                    || !self.tree.is_active(other)
-                    || !self.tree.is_behind(sensor, other)
-            });
-            if wrench.is_some() && outermost {
-                let lagged = self.wrenches.lagged_torque(sensor);
-                self.wanted_torque.iter_mut().zip(lagged).for_each(|(sum, torque)| *sum += torque);
-            }
-            for other in 0..self.tree.len() {
-                if !self.tree.is_behind(sensor, other) || other == sensor {
-                    continue;
-                }
-                if !trusted {
-                    self.unwanted[other] = None;
-                } else if outermost {
-                    let arm = self.tree.position(kinematics, sensor) - self.tree.position(kinematics, other);
-                    let (unwanted, wrench) =
-                        (self.unwanted[other], wrench.map(|wrench| moved(&wrench, &arm)));
-                    self.unwanted[other] = unwanted.zip(wrench).map(|(sum, wrench)| sum - wrench);
-                }
-            }
-        }
-        for (sensor, unwanted) in self.unwanted.iter_mut().enumerate() {
-            if self.wanted[sensor] && unwanted.is_some() {
-                *unwanted = Some(Vector6::zeros());
-            }
-        }
+        let Self { tree, wanted, settled, wrenches, unwanted, wanted_torque, .. } = self;
+        wanted_torque.fill(0.0);
+        let is_trusted = |sensor: usize| settled[sensor];
+        exclude_wanted(kinematics, tree, wanted, is_trusted, wrenches.external(), unwanted, |sensor, _| {
+            let lagged = wrenches.lagged_torque(sensor);
+            wanted_torque.iter_mut().zip(lagged).for_each(|(sum, torque)| *sum += torque);
+        });
     }
 }
 

@@ -73,7 +73,7 @@ impl Contact {
         let near = task.surface.closest_point_near(&local, triangle);
         let (distance, normal) = signed(&near, &local);
         let best = BestForce::of(frame, target, task.force_model, &near.point, &normal);
-        let joints = frame.joints();
+        let joints = frame.rows().len();
         let (chain, left) = frame.left_over(&near.point, &best.force, target, &mut residual[..joints]);
         residual[joints..joints + 2].copy_from_slice(&best.across);
         let across = best.across[0].powi(2) + best.across[1].powi(2);

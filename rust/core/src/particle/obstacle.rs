@@ -126,7 +126,7 @@ impl Obstacle {
                 centre[axis] += STEP;
                 Contact::of(task, sample, &centre, self.triangles[k], moved);
             }
-            let used = sample.links[task.link].joints() + 2;
+            let used = sample.links[task.link].rows().len() + 2;
             for (i, &here) in here[..used].iter().enumerate() {
                 let derivative = Vector3::from_fn(|axis, _| (moved[axis][i] - here) / STEP);
                 gram += derivative * derivative.transpose();

@@ -50,7 +50,7 @@ impl Window {
 
     /// How many joints move a link.
     pub fn chain(&self, link: usize) -> usize {
-        self.samples[self.newest].links[link].joints()
+        self.samples[self.newest].links[link].rows().len()
     }
 
     /// Place of the newest one among them.

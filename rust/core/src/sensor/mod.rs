@@ -9,7 +9,7 @@ mod load_compensator;
 mod sensor_tree;
 mod tool_load;
 
-pub(crate) use exclusion::sensor_torque;
+pub(crate) use exclusion::{exclude_wanted, leave_out_blind, sensor_torque};
 pub use force_torque_sensor::{Convention, ForceTorqueSensor};
 pub use ids::SensorIndex;
 pub(crate) use load_compensator::check_readings;

@@ -145,6 +145,11 @@ impl SensorTree {
         self.mounts[sensor].body
     }
 
+    /// A sensor's origin in the frame of its link's body (m).
+    pub(crate) fn origin(&self, sensor: usize) -> Vector3<f64> {
+        self.mounts[sensor].placement.translation
+    }
+
     /// The next sensor in use towards the base: the one that this sensor's loads pass on to.
     pub fn parent(&self, sensor: usize) -> Option<usize> {
         self.parent[sensor]

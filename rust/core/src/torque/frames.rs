@@ -1,4 +1,5 @@
-//! What a force on a link does to the joints at one pose, each joint over its noise. The measured torque is no part of it.
+//! What a force on a link does to the joints and the force/torque sensors at one pose, each row over its noise. What they
+//! measured is no part of it.
 
 use nalgebra::{Matrix3, Matrix4, Matrix6, Matrix6x3, Matrix6x4, Vector3, Vector4, Vector6};
 
@@ -8,7 +9,10 @@ use crate::robot::{Kinematics, LinkIndex, Robot, WORLD};
 use crate::spatial::vector::{split, stack};
 use crate::spatial::Pose;
 
-/// A joint axis in a link's frame, divided by the joint's noise: its torque under a force at a point is
+/// Rows of a sensor.
+pub(crate) const WRENCH: usize = 6;
+
+/// A joint axis, or an axis of a sensor, in a link's frame, divided by its noise: what it feels of a force at a point is
 /// `linear . force + angular . (point x force)`.
 #[derive(Debug, Clone, Copy)]
 struct Axis {
@@ -20,29 +24,27 @@ struct Axis {
 #[derive(Debug, Clone)]
 pub(crate) struct Frame {
     pub pose: Pose,
-    /// One a velocity variable that moves the link.
+    /// One a velocity variable that moves the link, then six a sensor that the link loads.
     axes: Vec<Axis>,
-    /// Which ones these are.
-    variables: Vec<usize>,
+    /// Which rows of a measurement these are.
+    rows: Vec<usize>,
+    /// Which sensors these are.
+    sensors: Vec<usize>,
     /// `J J^T` of the columns (linear, angular) of all axes: the squared norm of a wrench's torques is
     /// `wrench^T gram wrench`, for a wrench at the link's origin in its frame.
     pub(super) gram: Matrix6<f64>,
 }
 
 impl Frame {
-    /// How many velocity variables move the link.
-    pub fn joints(&self) -> usize {
-        self.axes.len()
-    }
-
-    /// What a wrench at the link's origin does, as the torques of these joints over their noise.
+    /// What a wrench at the link's origin does to one of the rows, over its noise.
     pub fn column(&self, axis: usize) -> Vector6<f64> {
         stack(&self.axes[axis].linear, &self.axes[axis].angular)
     }
 
-    /// The velocity variables that move the link.
-    pub fn variables(&self) -> &[usize] {
-        &self.variables
+    /// The rows of a measurement that feel the link: the velocity variables that move it, then the components of the wrenches of
+    /// sensors that it loads.
+    pub fn rows(&self) -> &[usize] {
+        &self.rows
     }
 
     /// Squared norm of the torques of a unit force along the inward normal, and their product with a target, each joint
@@ -105,34 +107,59 @@ impl Frame {
     }
 }
 
+/// A force/torque sensor whose wrench is measured, as (force, moment) at its origin, world axes.
+#[derive(Debug, Clone)]
+pub(crate) struct SensorMount {
+    /// That it is fixed to.
+    pub body: usize,
+    /// Its origin in the body's frame (m).
+    pub origin: Vector3<f64>,
+    /// By link: loads the sensor.
+    pub loads: Vec<bool>,
+}
+
 /// The links' frames; one a link of the robot, empty where none is looked for.
 #[derive(Debug, Clone)]
 pub(crate) struct Frames {
     pub links: Vec<Frame>,
     /// Indices of those that can be in contact.
     pub wanted: Vec<usize>,
+    sensors: Vec<SensorMount>,
 }
 
 impl Frames {
+    /// Where the external torque is all that is measured: its rows are the velocity variables.
     pub fn new(robot: &Robot, wanted: Vec<usize>) -> Self {
+        Self::with_sensors(robot, wanted, &[])
+    }
+
+    /// With the wrenches of sensors, whose rows follow the velocity variables, six each.
+    pub fn with_sensors(robot: &Robot, wanted: Vec<usize>, sensors: &[SensorMount]) -> Self {
         let still = Axis { linear: Vector3::zeros(), angular: Vector3::zeros() };
-        let frame = |body: usize| {
+        let frame = |link: usize| {
+            let body = robot.links()[link].body;
             let chain = if body == WORLD { &[] } else { robot.chain(body) };
-            let variables: Vec<usize> = chain.iter().flat_map(|&body| robot.velocity_range(body)).collect();
+            let joints = chain.iter().flat_map(|&body| robot.velocity_range(body));
+            let loaded: Vec<usize> = (0..sensors.len()).filter(|k| sensors[*k].loads[link]).collect();
+            let components =
+                loaded.iter().flat_map(|k| (0..WRENCH).map(move |i| robot.nv() + WRENCH * k + i));
+            let rows: Vec<usize> = joints.chain(components).collect();
             Frame {
                 pose: Pose::identity(),
-                axes: vec![still; variables.len()],
-                variables,
+                axes: vec![still; rows.len()],
+                rows,
+                sensors: loaded,
                 gram: Matrix6::zeros(),
             }
         };
-        Frames { links: robot.links().iter().map(|link| frame(link.body)).collect(), wanted }
+        Frames { links: (0..robot.links().len()).map(frame).collect(), wanted, sensors: sensors.to_vec() }
     }
 
-    /// Takes on a pose of the robot, and the standard deviation of each torque.
+    /// Takes on a pose of the robot, and the standard deviation of each row.
     pub fn update(&mut self, robot: &Robot, kinematics: &Kinematics, deviation: &[f64]) {
-        for &index in &self.wanted {
-            let frame = &mut self.links[index];
+        let Self { links, wanted, sensors } = self;
+        for &index in wanted.iter() {
+            let frame = &mut links[index];
             frame.pose = kinematics.link_pose(robot, LinkIndex::new(index));
             // From the reference origin of the kinematics to the link's.
             let arm = frame.pose.translation - kinematics.origin;
@@ -147,16 +174,32 @@ impl Frames {
                     frame.gram += column * column.transpose();
                 }
             });
+            for &sensor in &frame.sensors {
+                let SensorMount { body, origin, .. } = &sensors[sensor];
+                let state = &kinematics.bodies[*body];
+                // From the sensor's origin to the link's.
+                let arm = arm - (state.position + state.rotation * origin);
+                let first = robot.nv() + WRENCH * sensor;
+                for (i, axis) in axes.by_ref().take(WRENCH).enumerate() {
+                    let along = Vector3::ith(i % 3, 1.0 / deviation[first + i]);
+                    let (linear, angular) =
+                        if i < 3 { (along, Vector3::zeros()) } else { (along.cross(&arm), along) };
+                    axis.linear = frame.pose.inverse_transform_vector(&linear);
+                    axis.angular = frame.pose.inverse_transform_vector(&angular);
+                    let column = stack(&axis.linear, &axis.angular);
+                    frame.gram += column * column.transpose();
+                }
+            }
         }
     }
 
-    /// Takes on the pose of `plain` frames, whose torques are not weighed, with the standard deviation of each torque.
+    /// Takes on the pose of `plain` frames, whose rows are not weighed, with the standard deviation of each row.
     pub fn weigh(&mut self, plain: &Frames, deviation: &[f64]) {
         for &index in &self.wanted {
             let (frame, plain) = (&mut self.links[index], &plain.links[index]);
             frame.pose = plain.pose;
             frame.gram = Matrix6::zeros();
-            for ((axis, plain), &k) in frame.axes.iter_mut().zip(&plain.axes).zip(&frame.variables) {
+            for ((axis, plain), &k) in frame.axes.iter_mut().zip(&plain.axes).zip(&frame.rows) {
                 axis.linear = plain.linear / deviation[k];
                 axis.angular = plain.angular / deviation[k];
                 let column = stack(&axis.linear, &axis.angular);
@@ -165,7 +208,7 @@ impl Frames {
         }
     }
 
-    /// Takes from torques [Nm] what a force at a point of a link does (all in the link's frame).
+    /// Takes from the rows of a measurement [Nm, N] what a force at a point of a link does (all in the link's frame).
     pub fn subtract(
         &self,
         link: usize,
@@ -176,7 +219,7 @@ impl Frames {
     ) {
         let frame = &self.links[link];
         let moment = point.cross(force);
-        for (axis, &k) in frame.axes.iter().zip(&frame.variables) {
+        for (axis, &k) in frame.axes.iter().zip(&frame.rows) {
             torque[k] -= (axis.linear.dot(force) + axis.angular.dot(&moment)) * deviation[k];
         }
     }

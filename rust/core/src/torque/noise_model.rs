@@ -1,6 +1,8 @@
 //! How large the errors of an external torque are: the one meaning of noise for detection, isolation and posteriors.
 
-use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
+
+use nalgebra::{DMatrix, DVector, Vector6};
 
 use crate::error::{Error, Result};
 use crate::robot::{Robot, LARGEST};
@@ -183,7 +185,8 @@ impl NoiseModel {
         if at_rest.contains(&0.0) {
             return Err(Error::input("noise.torque", "must be positive where noise.model is zero"));
         }
-        Ok(TorqueNoise { at_rest, relative, largest_share: LARGEST_SHARE })
+        let joints = 0..at_rest.len();
+        Ok(TorqueNoise { at_rest, relative, largest_share: LARGEST_SHARE, groups: vec![joints] })
     }
 }
 
@@ -193,9 +196,27 @@ pub(crate) struct TorqueNoise {
     at_rest: Vec<f64>,
     relative: Vec<f64>,
     largest_share: f64,
+    /// Rows that err by a share of the largest one of them: the joints, then the force and the moment of each sensor.
+    groups: Vec<Range<usize>>,
 }
 
+/// What the wrench of a force/torque sensor errs by, relative to its force or moment: a hundredth, which data sheets state.
+pub(crate) const SENSOR_RELATIVE: f64 = 0.01;
+
 impl TorqueNoise {
+    /// With the wrenches of sensors as further rows, of these standard deviations without contact (N, Nm).
+    pub fn with_sensors(mut self, deviations: impl Iterator<Item = Vector6<f64>>) -> Self {
+        for deviation in deviations {
+            for part in [0..3, 3..6] {
+                let first = self.at_rest.len();
+                self.at_rest.extend_from_slice(&deviation.as_slice()[part]);
+                self.relative.resize(self.at_rest.len(), SENSOR_RELATIVE);
+                self.groups.push(first..self.at_rest.len());
+            }
+        }
+        self
+    }
+
     /// The same where no joint errs by what another one feels.
     pub fn without_coupling(self) -> Self {
         TorqueNoise { largest_share: 0.0, ..self }
@@ -226,9 +247,11 @@ impl TorqueNoise {
 
     /// The same where the standard deviations without contact are others.
     pub fn set_deviations_beside(&self, at_rest: &[f64], torque: &[f64], deviations: &mut [f64]) {
-        let largest = largest(torque);
-        for (k, deviation) in deviations.iter_mut().enumerate() {
-            *deviation = self.growing(k, 1.0, torque[k], largest).hypot(at_rest[k]);
+        for group in &self.groups {
+            let largest = largest(&torque[group.clone()]);
+            for k in group.clone() {
+                deviations[k] = self.growing(k, 1.0, torque[k], largest).hypot(at_rest[k]);
+            }
         }
     }
 }

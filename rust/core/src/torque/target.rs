@@ -1,4 +1,5 @@
-//! A measured external torque, over its noise, as each link's joints feel it.
+//! A measured external torque, with the wrenches of sensors where there are any, over its noise, as the rows feel it that each
+//! link moves or loads.
 
 use nalgebra::Vector6;
 
@@ -17,17 +18,17 @@ pub(crate) struct Target {
 impl Target {
     /// For these frames; all zero.
     pub fn new(frames: &Frames) -> Self {
-        let link = |joints| LinkTarget { torque: vec![0.0; joints], product: Vector6::zeros() };
-        Target { links: frames.links.iter().map(|frame| link(frame.joints())).collect(), squared: 0.0 }
+        let link = |rows| LinkTarget { torque: vec![0.0; rows], product: Vector6::zeros() };
+        Target { links: frames.links.iter().map(|frame| link(frame.rows().len())).collect(), squared: 0.0 }
     }
 
-    /// Takes on torques with their standard deviations, both one a velocity variable.
+    /// Takes on the rows of a measurement with their standard deviations.
     pub fn set(&mut self, frames: &Frames, torque: &[f64], deviation: &[f64]) {
         self.squared = torque.iter().zip(deviation).map(|(torque, noise)| (torque / noise).powi(2)).sum();
         for &link in &frames.wanted {
             let (frame, LinkTarget { torque: own, product }) = (&frames.links[link], &mut self.links[link]);
             *product = Vector6::zeros();
-            for (axis, (value, &k)) in own.iter_mut().zip(frame.variables()).enumerate() {
+            for (axis, (value, &k)) in own.iter_mut().zip(frame.rows()).enumerate() {
                 *value = torque[k] / deviation[k];
                 *product += frame.column(axis) * *value;
             }

@@ -6,11 +6,11 @@ use crate::robot::Kinematics;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TickEvidence<'a> {
     pub kinematics: &'a Kinematics,
-    /// External torque to find the place by, `(nv,)` (Nm, N): behind a slow observer, where there is a choice.
+    /// External torque to find the place by, then the wrenches of sensors (Nm, N): behind a slow observer, where there is a choice.
     pub torque: &'a [f64],
-    /// Its standard deviations without contact (Nm, N).
+    /// Standard deviations without contact (Nm, N).
     pub deviation: &'a [f64],
-    /// External torque that says the force now (Nm, N).
+    /// The same that says the force now (Nm, N).
     pub newest: &'a [f64],
     /// By velocity variable: it tells nothing.
     pub left_out: &'a [bool],

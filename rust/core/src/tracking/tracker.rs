@@ -1,14 +1,8 @@
 //! Follows a contact from its onset to its end, and fuses what its torques say of the place (algorithm D4).
 
-use std::sync::Arc;
-
 use super::evidence::TickEvidence;
 use super::identities::Identities;
-use crate::error::Result;
-use crate::isolation::{Isolation, SurfaceContact, TorqueNow};
-use crate::map::MapOptions;
-use crate::robot::Robot;
-use crate::torque::TorqueNoise;
+use crate::isolation::{Isolation, SurfaceContact, TorqueNow, LEFT_OUT};
 
 /// Time between two measurements of a contact that are kept (s), and the same as a share of the contact's age: so they are
 /// spread over all of it.
@@ -18,8 +12,6 @@ const INTERVAL_SHARE: f64 = 0.25;
 const STRONG: f64 = 0.6;
 /// One that is so many times as large tells more at once.
 const GROWN: f64 = 1.3;
-/// A torque that is left out counts with so many times its standard deviation.
-const LEFT_OUT: f64 = 1e6;
 
 /// Follows contacts.
 #[derive(Debug, Clone)]
@@ -39,20 +31,18 @@ pub(crate) struct ContactTracker {
 }
 
 impl ContactTracker {
-    /// # Errors
-    /// [`crate::Error::Input`] names the option.
-    pub fn new(robot: Arc<Robot>, samples: usize, noise: TorqueNoise, locate_within: f64) -> Result<Self> {
-        let options = MapOptions { samples, ..MapOptions::default() };
-        Ok(ContactTracker {
+    /// Follows what the posterior over all surface finds.
+    pub fn new(surface: SurfaceContact) -> Self {
+        ContactTracker {
             identities: Identities::new(),
-            deviation: vec![1.0; robot.nv()],
-            surface: SurfaceContact::new(robot, &options, noise, locate_within)?,
+            deviation: vec![1.0; surface.rows()],
+            surface,
             since: None,
             measured: 0.0,
             strength: 0.0,
             strongest: 0.0,
             concluded: 0.0,
-        })
+        }
     }
 
     /// A tick with contact: takes in its evidence, and puts the posterior's answer in place of what closed forms found, where
@@ -112,8 +102,8 @@ impl ContactTracker {
     /// Standard deviations without contact.
     fn weigh(&mut self, evidence: &TickEvidence<'_>) {
         for (k, deviation) in self.deviation.iter_mut().enumerate() {
-            let factor = if evidence.left_out[k] { LEFT_OUT } else { 1.0 };
-            *deviation = evidence.deviation[k] * factor;
+            let left_out = evidence.left_out.get(k).copied().unwrap_or(false);
+            *deviation = evidence.deviation[k] * if left_out { LEFT_OUT } else { 1.0 };
         }
     }
 }
