@@ -104,7 +104,7 @@ def test_located_is_a_distance_in_metres() -> None:
     tau = push_torque(robot, touch.q, "pelvis", touch.point, 40.0 * touch.force / np.linalg.norm(touch.force))
     options = {"torque_threshold": 1.0}
     (contact,) = cs.ContactIsolator(robot, **options).isolate(touch.q, tau).contacts
-    limit = 1.645 * contact.point_std
+    limit = contact.region_radius
     for factor, located in ((0.9, False), (1.1, True)):
         isolator = cs.ContactIsolator(robot, locate_within=factor * limit, **options)
         assert isolator.isolate(touch.q, tau).contacts[0].located == located

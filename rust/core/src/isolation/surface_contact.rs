@@ -224,7 +224,15 @@ impl SurfaceContact {
         }
         // Two answers that both explain the torques: neither is sure.
         let sure = contradicted.is_none() && explained && region_radius <= self.locate_within;
-        let mut contact = closed_form.filter(agrees).unwrap_or_else(|| self.contact(now, &place, explained));
+        let kept = closed_form.filter(agrees).map(|mut contact| {
+            // Other places explain the torques nearly as well.
+            let exact = is_exact(isolation.residual, now.torque);
+            if let Some(place) = contact.place.as_mut().filter(|_| !exact) {
+                place.std = place.std.max(self.summary.point_std());
+            }
+            contact
+        });
+        let mut contact = kept.unwrap_or_else(|| self.contact(now, &place, explained));
         contact.located = sure;
         contact.posterior = Some(self.describe(now, &place, region_radius, isolation));
         isolation.contacts.clear();
@@ -250,13 +258,12 @@ impl SurfaceContact {
         let pose = now.kinematics.link_pose(&self.robot, place.link);
         let point = pose.transform_point(&place.point);
         let force = self.force(now, place).map(|force| pose.rotation * force);
-        let covariance = self.summary.estimate().estimate.covariance.unwrap_or_default();
         Contact {
             place: Some(ContactPlace {
                 point,
                 point_local: place.point,
                 normal: pose.rotation * place.normal,
-                std: covariance.trace().sqrt(),
+                std: self.summary.point_std(),
             }),
             wrench: force.map(|force| stack(&force, &(point - pose.translation).cross(&force))),
             verified: explained && self.feels(place.link) > LINE_UNKNOWNS,

@@ -8,6 +8,8 @@ use crate::torque::{BestForce, ForceModel};
 
 /// Share of the posterior that a region holds.
 const REGION: f64 = 0.9;
+/// Share that three standard deviations of a point hold.
+const NEARLY_ALL: f64 = 0.99;
 /// Radius that holds it of a normal distribution along a line, in standard deviations (in two directions it is 1.52).
 const RADIUS: f64 = 1.645;
 
@@ -19,6 +21,7 @@ pub(crate) struct Summary {
     distances: Vec<(f64, f64)>,
     left: Vec<f64>,
     found: MapEstimate,
+    point_std: f64,
 }
 
 impl Summary {
@@ -28,6 +31,7 @@ impl Summary {
             friction: ForceModel::FrictionCone(friction),
             distances: Vec::with_capacity(posterior.most_pieces()),
             left: vec![0.0; rows],
+            point_std: 0.0,
             found: MapEstimate {
                 estimate: ContactEstimate::new(links, MOST_MODES),
                 region_radius: None,
@@ -42,6 +46,12 @@ impl Summary {
     /// The estimate that was read last.
     pub fn estimate(&self) -> &MapEstimate {
         &self.found
+    }
+
+    /// Standard deviation of the point (m): root mean square of the posterior's distance from it, or a third of the radius that holds
+    /// nearly all of the posterior if that is more, since a small share of it may be far away.
+    pub fn point_std(&self) -> f64 {
+        self.point_std
     }
 
     /// Reads a posterior that is complete.
@@ -70,21 +80,32 @@ impl Summary {
                 let place = frames.links[leaf.link].pose.transform_point(&leaf.place.point);
                 self.distances.push(((place - point).norm().hypot(RADIUS * leaf.spread), *weight));
             }
-            held_within(&mut self.distances)
+            let [region, nearly_all] = held_within(&mut self.distances, [REGION, NEARLY_ALL]);
+            let spread = found.estimate.covariance.map_or(0.0, |covariance| covariance.trace().sqrt());
+            self.point_std = spread.max(nearly_all / 3.0);
+            region
         });
         &self.found
     }
 }
 
-/// The distance within which most of the weight is, of distances with weights (m).
-fn held_within(distances: &mut [(f64, f64)]) -> f64 {
+/// The distances within which these shares of the weight are, in ascending order, of distances with weights (m).
+fn held_within(distances: &mut [(f64, f64)], shares: [f64; 2]) -> [f64; 2] {
     distances.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let mut held = 0.0;
-    for (distance, weight) in &*distances {
+    let mut known = distances.iter().map(|(distance, weight)| {
         held += weight;
-        if held >= REGION {
-            return *distance;
+        (*distance, held)
+    });
+    let farthest = distances.last().map_or(0.0, |last| last.0);
+    let mut last = (0.0, 0.0);
+    shares.map(|share| {
+        while last.1 < share {
+            match known.next() {
+                Some(next) => last = next,
+                None => return farthest,
+            }
         }
-    }
-    distances.last().map_or(0.0, |last| last.0)
+        last.0
+    })
 }

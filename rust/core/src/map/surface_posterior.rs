@@ -1,9 +1,11 @@
 //! The posterior of one contact over the surface, worked out in steps of bounded work: a control loop does one a tick.
 
+mod lines;
 mod refinement;
 
 use std::sync::Arc;
 
+use lines::{Line, HITS};
 use refinement::PLACES;
 
 use super::leaves::Leaf;
@@ -14,6 +16,7 @@ use crate::error::Result;
 use crate::posterior::resampling::normalise;
 use crate::posterior::Clusters;
 use crate::robot::{Kinematics, Robot};
+use crate::surface::RayHit;
 use crate::torque::{ForcePrior, PlaceBlock, PushLikelihood, SensorMount, LANES};
 
 /// More measurements of one contact than this are not kept.
@@ -49,6 +52,10 @@ enum Stage {
     Pieces {
         next: usize,
     },
+    /// Looks for places on the best force's line, from one of `likely` on.
+    Line {
+        next: usize,
+    },
     Spreads {
         next: usize,
     },
@@ -77,6 +84,8 @@ pub(crate) struct SurfacePosterior {
     order: Vec<u32>,
     /// By link and side: its best pieces.
     sides: Vec<[Option<usize>; PLACES]>,
+    line: Option<Line>,
+    hits: Vec<RayHit>,
     pub(super) clusters: Clusters,
     stage: Stage,
     level: usize,
@@ -110,6 +119,8 @@ impl SurfacePosterior {
             weights: Vec::with_capacity(most),
             order: Vec::with_capacity(most),
             sides: vec![[None; PLACES]; 2 * robot.links().len()],
+            line: None,
+            hits: Vec::with_capacity(HITS),
             clusters: Clusters::new(most, robot.links().len())?,
             stage: Stage::Done,
             level: 0,
@@ -181,6 +192,7 @@ impl SurfacePosterior {
         self.stage = match self.stage {
             Stage::Samples { rank, block } => self.weigh_samples(rank, block),
             Stage::Pieces { next } => self.divide(next),
+            Stage::Line { next } => self.follow_line(next),
             Stage::Spreads { next } => self.find_spreads(next),
             Stage::Done => Stage::Done,
         };
@@ -296,9 +308,17 @@ impl SurfacePosterior {
         }
     }
 
-    /// Whether smaller pieces are needed, and which are divided.
+    /// Whether smaller pieces are needed.
     fn next_level(&mut self) -> Stage {
         self.weigh_leaves();
+        if lines::LEVELS.contains(&self.level) {
+            return Stage::Line { next: 0 };
+        }
+        self.choose_pieces()
+    }
+
+    /// The pieces that are divided next.
+    fn choose_pieces(&mut self) -> Stage {
         let best = (0..self.leaves.len()).max_by(|&a, &b| self.weights[a].total_cmp(&self.weights[b]));
         let Some(best) = best.filter(|_| self.level < MOST_LEVELS) else { return self.finish() };
         let force = self.leaves[best].force;

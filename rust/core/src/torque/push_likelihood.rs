@@ -4,7 +4,7 @@
 use nalgebra::{Matrix3, Vector3};
 use wide::f64x4;
 
-use super::force_model::directions;
+use super::force_model::{directions, ForceModel};
 use super::frames::Frame;
 use super::link_target::LinkTarget;
 use super::place_step::PlaceStep;
@@ -69,6 +69,11 @@ impl ForcePrior {
             log_push: (1.0 - pull_probability).ln(),
             log_pull: pull_probability.ln(),
         }
+    }
+
+    /// The same friction as a cone.
+    pub fn force_model(&self) -> ForceModel {
+        ForceModel::FrictionCone(2.0 * self.slack)
     }
 
     /// Standard deviations of a normal force of this size, and of each force across the normal beside it (N): to first order,
