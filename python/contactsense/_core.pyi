@@ -1336,7 +1336,8 @@ class ContactIsolator:
             its point [m].
         calibration: A `Calibration` of this robot, whose noise takes the place of `noise`.
         samples: Samples of the surface from which the posterior of a single contact is worked out, as `ContactMap` does, where the
-            standard deviation of a torque is 3 mNm or more; 0 for closed forms only. Not with sensors, pulls or a floating base.
+            standard deviation of a torque is 3 mNm or more; 0 for closed forms only. Wrenches of
+            sensors count as the torques do. Not with `pushing=False`.
         pull_probability: Probability that a contact pulls on the surface, for this posterior.
 
     Raises:
@@ -1520,8 +1521,8 @@ class Contact:
     def probability(self) -> float:
         """Probability that the contact is on `link`; NaN where no posterior was worked out.
 
-        A monitor works out the posterior of a single contact over all surface (`ContactMap`) where `samples` is not zero and
-        there are no sensors, no wanted points and no floating base. It takes some ticks from the onset on.
+        A monitor works out the posterior of a single contact over all surface (`ContactMap`), from the wrenches of sensors as well as
+        the torques, where `samples` is not zero and there are no wanted points. It takes some ticks from the onset on.
         """
     @property
     def link_probabilities(self) -> dict[str, float]:
@@ -1531,6 +1532,20 @@ class Contact:
         """Covariance of the point, `(3, 3)`, world frame [m^2]; NaN without posterior; read-only.
 
         The second moment of the posterior about `point`, other modes included.
+        """
+    @property
+    def determined_wrench(self) -> NDArray[np.float64]:
+        """What is known of the wrench where the point cannot be determined, `(6,)`; read-only.
+
+        Force and moment on the robot at the link's origin, world axes [N, Nm]. NaN for a contact that is located, and where there are several contacts. `determined_wrench_covariance` says which
+        components, or combinations of them, are determined.
+        """
+    @property
+    def determined_wrench_covariance(self) -> NDArray[np.float64]:
+        """Covariance of `determined_wrench`, `(6, 6)` [N^2, N^2 m, N^2 m^2]; NaN where that is NaN; read-only.
+
+        Before anything is measured, the standard deviation of each component is 100 N for the force, and 100 N times the distance of
+        the link's farthest point from its origin for the moment. What the torques do not determine keeps it.
         """
     @property
     def region_radius(self) -> float:
@@ -1620,7 +1635,7 @@ class ContactMonitor:
         locate_within: A contact is located if 90 % of the places that explain the torques are within this distance of
             its point [m].
         samples: Samples of the surface from which the posterior of a single contact is worked out, as `ContactMap` does,
-            spread over ticks; 0 for closed forms only. Not with sensors, wanted points or a floating base.
+            spread over ticks; 0 for closed forms only. Wrenches of sensors count as the torques do. Not with wanted points.
 
     Raises:
         InputError: Names the argument.

@@ -1,4 +1,4 @@
-//! `Candidate`, `Contact` and `Isolation`.
+//! `Candidate` and `Contact`.
 
 use std::sync::Arc;
 
@@ -110,6 +110,7 @@ pub struct PyContact {
     found: Found,
     vectors: Vectors,
     covariance: Once<PyArray2<f64>>,
+    determined_covariance: Once<PyArray2<f64>>,
     candidates: Once<PyTuple>,
     modes: Once<PyTuple>,
 }
@@ -129,13 +130,21 @@ struct Vectors {
     force: Once<PyArray1<f64>>,
     normal: Once<PyArray1<f64>>,
     wrench: Once<PyArray1<f64>>,
+    determined: Once<PyArray1<f64>>,
 }
 
 impl PyContact {
     fn new(names: Arc<Names>, contact: Contact, found: Found) -> Self {
-        let (vectors, covariance) = (Vectors::default(), Once::default());
-        let (candidates, modes) = (Once::default(), Once::default());
-        Self { names, contact, found, vectors, covariance, candidates, modes }
+        Self {
+            names,
+            contact,
+            found,
+            vectors: Vectors::default(),
+            covariance: Once::default(),
+            determined_covariance: Once::default(),
+            candidates: Once::default(),
+            modes: Once::default(),
+        }
     }
 
     pub fn from_content((names, contact, found): (Names, Contact, Found)) -> Self {
@@ -234,8 +243,8 @@ impl PyContact {
 
     /// Probability that the contact is on `link`; NaN where no posterior was worked out.
     ///
-    /// A monitor works out the posterior of a single contact over all surface (`ContactMap`) where `samples` is not zero and
-    /// there are no sensors, no wanted points and no floating base. It takes some ticks from the onset on.
+    /// A monitor works out the posterior of a single contact over all surface (`ContactMap`), from the wrenches of sensors as well as
+    /// the torques, where `samples` is not zero and there are no wanted points. It takes some ticks from the onset on.
     #[getter]
     fn probability(&self) -> f64 {
         self.contact.posterior.as_ref().map_or(f64::NAN, |posterior| posterior.probability)
@@ -258,6 +267,26 @@ impl PyContact {
     fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let known = self.contact.posterior.as_ref().map(|posterior| posterior.covariance);
         self.covariance.get(py, || matrix(py, known))
+    }
+
+    /// What is known of the wrench where the point cannot be determined, `(6,)`; read-only.
+    ///
+    /// Force and moment on the robot at the link's origin, world axes [N, Nm]. NaN for a contact that is located, and where there are several contacts. `determined_wrench_covariance` says which
+    /// components, or combinations of them, are determined.
+    #[getter]
+    fn determined_wrench<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        let known = self.contact.determined.map(|determined| determined.wrench);
+        self.vectors.determined.get(py, || Ok(vector(py, known)))
+    }
+
+    /// Covariance of `determined_wrench`, `(6, 6)` [N^2, N^2 m, N^2 m^2]; NaN where that is NaN; read-only.
+    ///
+    /// Before anything is measured, the standard deviation of each component is 100 N for the force, and 100 N times the distance of
+    /// the link's farthest point from its origin for the moment. What the torques do not determine keeps it.
+    #[getter]
+    fn determined_wrench_covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let known = self.contact.determined.map(|determined| determined.covariance);
+        self.determined_covariance.get(py, || matrix(py, known))
     }
 
     /// Radius of the ball about `point` that holds 90 % of the posterior [m]; NaN without posterior.
@@ -298,10 +327,14 @@ impl PyContact {
     ///     Plain Python values: numbers, strings, lists in place of arrays and tuples, and dicts in place of candidates.
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
         let vectors = ["link", "point", "point_local", "force", "normal", "wrench", "source"];
+        let determined = ["determined_wrench", "determined_wrench_covariance"];
         let others = ["located", "point_std", "verified", "candidates"];
         let posterior = ["probability", "link_probabilities", "covariance", "region_radius", "modes"];
         let track = ["id", "since", "peak_force"];
-        plain_dict(slf.as_any(), &[&vectors[..], &others[..], &posterior[..], &track[..]].concat())
+        plain_dict(
+            slf.as_any(),
+            &[&vectors[..], &determined[..], &others[..], &posterior[..], &track[..]].concat(),
+        )
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
@@ -317,33 +350,6 @@ impl PyContact {
             }
             _ => format!("Contact('{link}', located=False)"),
         }
-    }
-}
-
-/// All contacts of one instant.
-///
-/// Frozen; can be pickled and copied.
-///
-/// Example:
-///     >>> import contactsense as cs, numpy as np
-///     >>> robot = cs.Robot.named("iiwa14")
-///     >>> isolation = cs.ContactIsolator(robot).isolate(np.full(7, 0.4), [1.0, 2.0, 0.5, 0.0, 0.0, 0.0, 0.0])
-///     >>> len(isolation.contacts), isolation.rank_deficit
-///     (1, 3)
-#[pyclass(frozen, name = "Isolation", module = "contactsense")]
-pub struct PyIsolation {
-    names: Arc<Names>,
-    isolation: Isolation,
-    contacts: Once<PyTuple>,
-}
-
-impl PyIsolation {
-    pub fn new(names: Arc<Names>, isolation: Isolation) -> Self {
-        Self { names, isolation, contacts: Once::default() }
-    }
-
-    pub fn from_content((names, isolation): (Names, Isolation)) -> Self {
-        Self::new(Arc::new(names), isolation)
     }
 }
 
@@ -369,62 +375,4 @@ pub fn contacts<'py>(
     let list: Vec<Bound<'py, PyContact>> =
         isolation.contacts.iter().map(|contact| Bound::new(py, wrap(contact))).collect::<PyResult<_>>()?;
     PyTuple::new(py, list)
-}
-
-#[pymethods]
-impl PyIsolation {
-    /// The contacts, farthest from the base first; the same tuple at every access.
-    #[getter]
-    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        self.contacts.get(py, || contacts(py, &self.names, &self.isolation))
-    }
-
-    /// Components of the contacts' wrenches that the torques leave open (Vorndamme 2017, eq. 31).
-    #[getter]
-    fn rank_deficit(&self) -> usize {
-        self.isolation.rank_deficit
-    }
-
-    /// Norm of the external torque that the contacts do not explain [Nm, N].
-    #[getter]
-    fn residual(&self) -> f64 {
-        self.isolation.residual
-    }
-
-    /// Names of the links that may carry a contact, likeliest first.
-    #[getter]
-    fn link_candidates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        self.names.of_links(py, &self.isolation.link_candidates)
-    }
-
-    /// Whether something was left out.
-    ///
-    /// There were more contacts than `max_contacts`, more intersections of a line than are kept (the nearest are), or
-    /// more explanations to try than the bounded work of a call allows.
-    #[getter]
-    fn truncated(&self) -> bool {
-        self.isolation.truncated
-    }
-
-    /// All attributes by name.
-    ///
-    /// Returns:
-    ///     Plain Python values: numbers, strings, lists in place of arrays and tuples, and dicts in place of contacts.
-    fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        let attributes = ["contacts", "rank_deficit", "residual", "link_candidates", "truncated"];
-        plain_dict(slf.as_any(), &attributes)
-    }
-
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        reduced(py, "Isolation", &(&*self.names, &self.isolation))
-    }
-
-    fn __repr__(&self) -> String {
-        format!(
-            "Isolation({} contacts, rank_deficit={}, residual={:.3e})",
-            self.isolation.contacts.len(),
-            self.isolation.rank_deficit,
-            self.isolation.residual
-        )
-    }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use contactsense::nalgebra::Matrix3;
+use contactsense::nalgebra::SMatrix;
 use contactsense::particle::{FilterEstimate, Mode};
 use contactsense::robot::LinkIndex;
 use numpy::{PyArray1, PyArray2};
@@ -115,9 +115,12 @@ pub fn modes<'py>(py: Python<'py>, names: &Arc<Names>, modes: &[Mode]) -> PyResu
 }
 
 /// A read-only `(3, 3)` array; NaN where there is none.
-pub fn matrix<'py>(py: Python<'py>, matrix: Option<Matrix3<f64>>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let m = matrix.unwrap_or(Matrix3::repeat(f64::NAN));
-    Ok(read_only(from_rows(py, (0..3).map(|i| [m[(i, 0)], m[(i, 1)], m[(i, 2)]]))?))
+pub fn matrix<'py, const N: usize>(
+    py: Python<'py>,
+    matrix: Option<SMatrix<f64, N, N>>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let m = matrix.unwrap_or(SMatrix::repeat(f64::NAN));
+    Ok(read_only(from_rows(py, (0..N).map(|i| std::array::from_fn::<_, N, _>(|k| m[(i, k)])))?))
 }
 
 pub const ATTRIBUTES: [&str; 16] = [

@@ -12,8 +12,8 @@ use pyo3::types::PyTuple;
 use crate::arguments::{pushing, robot, sole, whole, Number};
 use crate::arrays::{Readings, Vector};
 use crate::calibration::noise_of;
-use crate::contact::PyIsolation;
 use crate::errors::to_python;
+use crate::isolation::PyIsolation;
 use crate::names::Names;
 use crate::observer::scalar_or_vector;
 use crate::returned::{numbers, wrench_rows};
@@ -46,7 +46,8 @@ pub fn contact_count(object: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
 ///         its point [m].
 ///     calibration: A `Calibration` of this robot, whose noise takes the place of `noise`.
 ///     samples: Samples of the surface from which the posterior of a single contact is worked out, as `ContactMap` does, where the
-///         standard deviation of a torque is 3 mNm or more; 0 for closed forms only. Not with sensors, pulls or a floating base.
+///         standard deviation of a torque is 3 mNm or more; 0 for closed forms only. Wrenches of
+///         sensors count as the torques do. Not with `pushing=False`.
 ///     pull_probability: Probability that a contact pulls on the surface, for this posterior.
 ///
 /// Raises:

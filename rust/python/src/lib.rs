@@ -20,6 +20,7 @@ mod errors;
 mod estimate;
 mod filter_options;
 mod identifiability;
+mod isolation;
 mod isolator;
 mod monitor;
 mod monitor_external;
@@ -75,7 +76,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<motion::PyMotion>()?;
     module.add_class::<diagnosis::PyFinding>()?;
     module.add_class::<isolator::PyContactIsolator>()?;
-    module.add_class::<contact::PyIsolation>()?;
+    module.add_class::<isolation::PyIsolation>()?;
     module.add_class::<contact::PyContact>()?;
     module.add_class::<contact::PyCandidate>()?;
     module.add_class::<monitor::PyContactMonitor>()?;

@@ -52,7 +52,7 @@ use crate::sensor::{sensor_tuple, sensors, wanted_places, wrench_thresholds};
 ///     locate_within: A contact is located if 90 % of the places that explain the torques are within this distance of
 ///         its point [m].
 ///     samples: Samples of the surface from which the posterior of a single contact is worked out, as `ContactMap` does,
-///         spread over ticks; 0 for closed forms only. Not with sensors, wanted points or a floating base.
+///         spread over ticks; 0 for closed forms only. Wrenches of sensors count as the torques do. Not with wanted points.
 ///
 /// Raises:
 ///     InputError: Names the argument.

@@ -11,12 +11,13 @@ use serde::Serialize;
 
 use crate::calibration::PyCalibration;
 use crate::calibration_parts::{PyBodyInertia, PyJointFriction, PyPayload};
-use crate::contact::{PyCandidate, PyContact, PyIsolation};
+use crate::contact::{PyCandidate, PyContact};
 use crate::contact_map::PyMapEstimate;
 use crate::diagnosis::PyFinding;
 use crate::errors::{input, refused};
 use crate::estimate::{PyContactEstimate, PyMode};
 use crate::identifiability::PyIdentifiability;
+use crate::isolation::PyIsolation;
 use crate::monitor_payload::PyPayloadProposal;
 use crate::motion::PyMotion;
 use crate::noise::PyNoiseModel;

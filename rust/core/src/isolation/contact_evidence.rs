@@ -3,12 +3,24 @@
 
 use nalgebra::Vector6;
 
+use super::surface_contact::TorqueNow;
 use crate::robot::{Kinematics, Robot};
 use crate::sensor::{exclude_wanted, leave_out_blind, sensor_torque, SensorTree};
 use crate::torque::{SensorMount, TorqueNoise, LEVEL, SENSOR_RELATIVE, WRENCH};
 
 /// A row that is left out counts with so many times its standard deviation.
 pub(crate) const LEFT_OUT: f64 = 1e6;
+
+/// External wrenches of the sensors of a robot where some contacts are wanted.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct WithoutWanted<'a> {
+    /// Of each sensor without wanted contacts, none where that is not known.
+    pub unwanted: &'a [Option<Vector6<f64>>],
+    /// Of each sensor with them, none where it is not trusted.
+    pub all: &'a [Option<Vector6<f64>>],
+    /// By velocity variable: wanted contacts may load it unmeasured.
+    pub blind: &'a [bool],
+}
 
 /// Rows: one a velocity variable, then six a sensor that sees contacts which are not wanted.
 #[derive(Debug, Clone)]
@@ -19,8 +31,8 @@ pub(crate) struct ContactEvidence {
     /// Of each sensor's wrench without contact (N, Nm).
     wrench_deviation: Vec<Vector6<f64>>,
     /// What is measured, and its standard deviations without contact (Nm, N).
-    pub value: Vec<f64>,
-    pub deviation: Vec<f64>,
+    value: Vec<f64>,
+    deviation: Vec<f64>,
     columns: Vec<f64>,
     scratch: Scratch,
 }
@@ -96,20 +108,19 @@ impl ContactEvidence {
             left.iter_mut().zip(&*columns).for_each(|(left, wanted)| *left -= wanted);
         });
         leave_out_blind(robot, tree, &self.wanted, trusted, blind);
-        self.set_without_wanted(robot, kinematics, tree, (left, torque.1), (unwanted, wrenches), blind);
+        let sensed = WithoutWanted { unwanted, all: wrenches, blind };
+        self.set_without_wanted(robot, kinematics, tree, (left, torque.1), &sensed);
         self.scratch = scratch;
     }
 
-    /// The same of a torque and of wrenches without those of wanted contacts, which may load the `blind` joints; and the wrenches of
-    /// all sensors.
+    /// The same of a torque from which wanted contacts are excluded already.
     pub fn set_without_wanted(
         &mut self,
         robot: &Robot,
         kinematics: &Kinematics,
         tree: &SensorTree,
         torque: (&[f64], &[f64]),
-        wrenches: (&[Option<Vector6<f64>>], &[Option<Vector6<f64>>]),
-        blind: &[bool],
+        sensed: &WithoutWanted<'_>,
     ) {
         let nv = robot.nv();
         self.value[..nv].copy_from_slice(torque.0);
@@ -118,17 +129,27 @@ impl ContactEvidence {
             let sensor = self.sensors[position];
             let own = nv + WRENCH * position..nv + WRENCH * (position + 1);
             self.deviation[own.clone()].copy_from_slice(self.wrench_deviation[sensor].as_slice());
-            match &wrenches.0[sensor] {
+            match &sensed.unwanted[sensor] {
                 Some(wrench) => self.value[own].copy_from_slice(wrench.as_slice()),
-                None => own.for_each(|row| self.leave_out(row)),
+                None => own.for_each(|row| self.leave_row_out(row)),
             }
         }
-        self.add_errors_of_wanted(robot, kinematics, tree, wrenches.1);
-        (0..nv).filter(|k| blind[*k]).for_each(|k| self.leave_out(k));
+        self.add_errors_of_wanted(robot, kinematics, tree, sensed.all);
+        self.leave_out(sensed.blind);
     }
 
-    /// A row tells nothing.
-    fn leave_out(&mut self, row: usize) {
+    /// The rows at a pose.
+    pub fn at<'a>(&'a self, kinematics: &'a Kinematics) -> TorqueNow<'a> {
+        TorqueNow { kinematics, torque: &self.value, deviation: &self.deviation }
+    }
+
+    /// The torques of these velocity variables tell nothing.
+    pub fn leave_out(&mut self, left_out: &[bool]) {
+        let left_out = left_out.iter().enumerate().filter(|(_, left_out)| **left_out);
+        left_out.for_each(|(k, _)| self.leave_row_out(k));
+    }
+
+    fn leave_row_out(&mut self, row: usize) {
         self.value[row] = 0.0;
         self.deviation[row] *= LEFT_OUT;
     }

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use nalgebra::Vector6;
 
 use super::body_set::BodySet;
-use super::contact_evidence::ContactEvidence;
+use super::contact_evidence::{ContactEvidence, WithoutWanted};
+use super::determined_wrench::WrenchPosterior;
 use super::found::Scene;
 use super::line::LineCast;
 use super::options::IsolatorOptions;
@@ -13,7 +14,7 @@ use super::region::{Region, Regions};
 use super::result::{Candidate, Isolation, CANDIDATES};
 use super::rows::{Root, TorqueRows};
 use super::several::SeveralContacts;
-use super::surface_contact::{SurfaceContact, TorqueNow};
+use super::surface_contact::SurfaceContact;
 use super::tips::TipSearch;
 use super::wrench::WrenchEstimate;
 use super::wrench_rows::WrenchRows;
@@ -90,7 +91,10 @@ pub struct ContactIsolator {
     pub(super) line: LineCast,
     rows: TorqueRows,
     pub(super) several: SeveralContacts,
-    surface: Option<(ContactEvidence, SurfaceContact)>,
+    /// What is measured, as rows.
+    evidence: ContactEvidence,
+    surface: Option<SurfaceContact>,
+    wrench_posterior: WrenchPosterior,
     pub(super) near: Vec<LinkIndex>,
     /// By body: cannot carry the contact that is being judged.
     pub(super) excluded: Vec<bool>,
@@ -120,7 +124,9 @@ impl ContactIsolator {
         let tree = SensorTree::new(&robot, &options.sensors)?;
         let wrench_threshold = check_wrench_threshold(&tree, &options.wrench_threshold)?;
         let wanted = tree.wanted(&options.wanted_contacts)?;
-        let surface = options.surface(&robot, (&tree, &wanted), &wrench_threshold, &noise)?;
+        let evidence = ContactEvidence::new(&robot, &tree, &wanted, &wrench_threshold);
+        let surface = options.surface(&robot, (&tree, &evidence), &noise)?;
+        let wrench_posterior = WrenchPosterior::new(&robot, &tree, &evidence, &noise);
         let (nv, links) = (robot.nv(), robot.links().len());
         // More than a contact a link cannot be told apart.
         let max_contacts = options.max_contacts.min(links.max(1));
@@ -144,7 +150,9 @@ impl ContactIsolator {
             line: LineCast::new(),
             rows: TorqueRows::new(&robot),
             several: SeveralContacts::new(&robot, max_contacts),
+            evidence,
             surface,
+            wrench_posterior,
             near: Vec::with_capacity(links),
             excluded: vec![false; robot.body_count()],
             displaced: Vec::with_capacity(CANDIDATES),
@@ -183,14 +191,15 @@ impl ContactIsolator {
         let mut kinematics = std::mem::replace(&mut self.kinematics, Kinematics::empty());
         kinematics.set_configuration(&self.robot, q);
         self.isolate_at(&kinematics, tau_ext, wrenches, None);
-        if let Some((evidence, surface)) = &mut self.surface {
-            let tree = &self.regions.tree;
-            let torque = (tau_ext, self.noise.at_rest());
-            evidence.set(&self.robot, &kinematics, tree, torque, wrenches);
-            let ContactEvidence { value, deviation, .. } = evidence;
-            let now = TorqueNow { kinematics: &kinematics, torque: value, deviation };
-            surface.judge(&now, &mut self.isolation);
-            self.isolation.name_sources(tree);
+        if !self.isolation.contacts.is_empty() {
+            let Self { evidence, surface, wrench_posterior, regions, isolation, robot, noise, .. } = self;
+            evidence.set(robot, &kinematics, &regions.tree, (tau_ext, noise.at_rest()), wrenches);
+            let now = evidence.at(&kinematics);
+            if let Some(surface) = surface {
+                surface.judge(&now, isolation);
+                isolation.name_sources(&regions.tree);
+            }
+            isolation.determine_wrench(&now, wrench_posterior);
         }
         self.kinematics = kinematics;
         Ok(&self.isolation)
@@ -250,6 +259,29 @@ impl ContactIsolator {
         for ((left_out, sign), torque) in self.left_out.iter_mut().zip(inward).zip(tau_ext) {
             *left_out = sign * torque > 0.0;
         }
+    }
+
+    /// Takes in the torque of a monitor without wanted contacts `(nv,)`, with its standard deviations, and what its sensors say.
+    pub(crate) fn take_in(
+        &mut self,
+        kinematics: &Kinematics,
+        torque: (&[f64], &[f64]),
+        sensed: Option<WithoutWanted<'_>>,
+    ) {
+        let Self { evidence, robot, regions, left_out, .. } = self;
+        let sensed = sensed.unwrap_or(WithoutWanted { unwanted: &[], all: &[], blind: &[] });
+        evidence.set_without_wanted(robot, kinematics, &regions.tree, torque, &sensed);
+        evidence.leave_out(left_out);
+    }
+
+    /// What is measured, as rows.
+    pub(crate) fn evidence(&self) -> &ContactEvidence {
+        &self.evidence
+    }
+
+    /// Says what is known of the wrench of a single contact that is not located, from what was taken in.
+    pub(crate) fn determine_wrench(&mut self, kinematics: &Kinematics, isolation: &mut Isolation) {
+        isolation.determine_wrench(&self.evidence.at(kinematics), &mut self.wrench_posterior);
     }
 
     /// By velocity variable: left out of the next call.

@@ -4,6 +4,7 @@ mod body_set;
 mod caster;
 mod conics;
 mod contact_evidence;
+mod determined_wrench;
 mod force;
 mod found;
 mod isolator;
@@ -30,7 +31,8 @@ mod work;
 mod wrench;
 mod wrench_rows;
 
-pub(crate) use contact_evidence::{ContactEvidence, LEFT_OUT};
+pub(crate) use contact_evidence::{ContactEvidence, WithoutWanted, LEFT_OUT};
+pub use determined_wrench::DeterminedWrench;
 pub use isolator::ContactIsolator;
 #[cfg(feature = "serde")]
 pub(crate) use options::samples;

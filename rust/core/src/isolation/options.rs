@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use nalgebra::Vector6;
-
 use super::contact_evidence::ContactEvidence;
 use super::surface_contact::SurfaceContact;
 use crate::detection::check_threshold;
@@ -54,8 +52,8 @@ pub struct IsolatorOptions {
     pub wanted_contacts: Vec<String>,
     /// A contact is located if 90 % of the places that explain the torques are within this distance of its point (m).
     pub locate_within: f64,
-    /// Samples of the surface by which a single contact of an arm without sensors is judged, where the torques have noise (3 mNm or
-    /// more); zero for closed forms only.
+    /// Samples of the surface by which a single contact is judged, where the torques have noise (3 mNm or more); zero for closed forms
+    /// only.
     #[cfg_attr(feature = "serde", serde(default = "samples"))]
     pub samples: usize,
     /// Probability that a contact pulls on the surface.
@@ -118,28 +116,23 @@ impl IsolatorOptions {
         Ok((given.unwrap_or_else(|| noise.threshold()), noise))
     }
 
-    /// What judges a contact by all surface, with the evidence that it takes; none where closed forms answer alone.
+    /// What judges a contact by all surface; none where closed forms answer alone.
     ///
     /// # Errors
     /// [`Error::Input`] names the option.
     pub(super) fn surface(
         &self,
         robot: &Arc<Robot>,
-        (tree, wanted): (&SensorTree, &[bool]),
-        wrench_threshold: &[Vector6<f64>],
+        sensed: (&SensorTree, &ContactEvidence),
         noise: &TorqueNoise,
-    ) -> Result<Option<(ContactEvidence, SurfaceContact)>> {
+    ) -> Result<Option<SurfaceContact>> {
         let Self { samples, pull_probability, .. } = *self;
         let ideal = noise.at_rest().iter().all(|deviation| *deviation < IDEAL);
         if samples == 0 || !self.pushing || ideal {
             return Ok(None);
         }
         let options = MapOptions { samples, pull_probability, ..MapOptions::default() };
-        let evidence = ContactEvidence::new(robot, tree, wanted, wrench_threshold);
-        let sensed = (tree, &evidence);
-        let found =
-            SurfaceContact::new(Arc::clone(robot), &options, sensed, noise.clone(), self.locate_within)?;
-        Ok(found.map(|surface| (evidence, surface)))
+        SurfaceContact::new(Arc::clone(robot), &options, sensed, noise.clone(), self.locate_within)
     }
 
     /// # Errors

@@ -14,7 +14,7 @@ use super::source::{signal_of, Source};
 use super::tare::RestReadings;
 use crate::detection::{ContactTest, Detector, FreeDirections, Load, ReleaseDetector, Whitening};
 use crate::error::{Error, Result};
-use crate::isolation::{ContactEvidence, ContactIsolator};
+use crate::isolation::ContactIsolator;
 use crate::observer::{MomentumObserver, Step};
 use crate::robot::Robot;
 use crate::sample::Sample;
@@ -75,7 +75,7 @@ pub struct ContactMonitor {
     pub(super) detector: Detector,
     pub(super) isolator: ContactIsolator,
     /// None where `samples` is zero, and with wanted points.
-    pub(super) tracker: Option<(ContactEvidence, ContactTracker)>,
+    pub(super) tracker: Option<ContactTracker>,
     pub(super) sensing: Option<Sensing>,
     pub(super) options: MonitorOptions,
     pub(super) report: ContactReport,
@@ -110,8 +110,8 @@ impl ContactMonitor {
             &options.isolation.wrench_threshold,
             options.hold_time,
         )?;
-        let wanted = tree.wanted(&options.isolation.wanted_contacts)?;
-        let tracker = options.tracker(&robot, (&tree, &wanted), &noise)?;
+        let isolator = ContactIsolator::new(robot.clone(), &options.isolation)?;
+        let tracker = options.tracker(&robot, (&tree, isolator.evidence()), &noise)?;
         let sensing = Sensing::new(
             &robot,
             tree,
@@ -125,7 +125,6 @@ impl ContactMonitor {
             options.release_rule(&robot, &options.release_threshold(&robot, &test, &threshold)?)?,
         );
         let bias_tracker = |constant| BiasTracker::new(constant, greatest_bias);
-        let isolator = ContactIsolator::new(robot.clone(), &options.isolation)?;
         let sensors = options.isolation.sensors.len();
         let mut monitor = Self {
             clock: SampleClock::new(options.dt),
@@ -235,7 +234,7 @@ impl ContactMonitor {
             self.isolate();
         } else {
             self.report.isolation.clear();
-            self.tracker.iter_mut().for_each(|(_, tracker)| tracker.rest());
+            self.tracker.iter_mut().for_each(ContactTracker::rest);
         }
         self.finish_report();
         &self.report
@@ -263,30 +262,26 @@ impl ContactMonitor {
             }
         }
         self.isolator.exchange(&mut self.report.isolation);
-        let Self { robot, tracker, test, observer, isolator, report, deviation, clock, sensing, .. } = self;
-        let Some((rows, tracker)) = tracker else { return };
+        let Self { tracker, test, observer, isolator, report, deviation, clock, sensing, .. } = self;
         let ContactReport { external_torque, collision_torque, isolation, .. } = report;
         let kinematics = observer.kinematics();
-        let (torque, deviation, newest) = match (&sensing, test) {
-            (Some(sensing), _) => {
-                // A slower observer is behind the sensors.
-                let torque = (&collision_torque[..], &deviation[..]);
-                let wrenches = (sensing.unwanted(), sensing.trusted());
-                rows.set_without_wanted(robot, kinematics, sensing.tree(), torque, wrenches, sensing.blind());
-                (&rows.value[..], &rows.deviation[..], &rows.value[..])
-            }
-            (None, Some(test)) => {
-                let (torque, deviation) = test.contact_signal();
-                (torque, deviation, &external_torque[..])
-            }
-            (None, None) => (&external_torque[..], &deviation[..], &external_torque[..]),
-        };
-        let (left_out, time) = (isolator.left_out(), clock.time());
-        let evidence = TickEvidence { kinematics, torque, deviation, newest, left_out, time };
-        tracker.follow(&evidence, isolation);
+        let newest = if sensing.is_some() { &collision_torque[..] } else { &external_torque[..] };
+        isolator.take_in(kinematics, (newest, deviation), sensing.as_ref().map(Sensing::without_wanted));
+        let rows = isolator.evidence().at(kinematics);
+        if let Some(tracker) = tracker {
+            // A slower observer is behind the sensors.
+            let (torque, deviation) = match test {
+                Some(test) if sensing.is_none() => test.contact_signal(),
+                _ => (rows.torque, rows.deviation),
+            };
+            let (newest, left_out, time) = (rows.torque, isolator.left_out(), clock.time());
+            let evidence = TickEvidence { kinematics, torque, deviation, newest, left_out, time };
+            tracker.follow(&evidence, isolation);
+        }
         if let Some(sensing) = sensing {
             isolation.name_sources(sensing.tree());
         }
+        isolator.determine_wrench(kinematics, isolation);
     }
 
     fn check(&self, sample: &Sample<'_>) -> Result<()> {
@@ -344,7 +339,7 @@ impl ContactMonitor {
         self.free.reset();
         self.detector.reset();
         self.report.isolation.clear();
-        self.tracker.iter_mut().for_each(|(_, tracker)| tracker.reset());
+        self.tracker.iter_mut().for_each(ContactTracker::reset);
         self.report.external_torque.fill(0.0);
         self.report.collision_torque.fill(0.0);
         if let Some(sensing) = &mut self.sensing {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::calibration::Calibration;
-use crate::detection::{check_wrench_threshold, ContactTest, ReleaseRule, FOLLOW_TIME};
+use crate::detection::{ContactTest, ReleaseRule, FOLLOW_TIME};
 use crate::error::{Error, Result};
 use crate::isolation::{ContactEvidence, IsolatorOptions, SurfaceContact, SAMPLES};
 use crate::map::MapOptions;
@@ -64,7 +64,7 @@ pub struct MonitorOptions {
     /// Per velocity variable, or one for all.
     pub hysteresis: Vec<f64>,
     /// Samples of the surface by which the place of a contact is found where closed forms do not determine it; zero for closed
-    /// forms only. Of arms without sensors and wanted points.
+    /// forms only. Not with wanted points.
     #[cfg_attr(feature = "serde", serde(default = "crate::isolation::samples"))]
     pub samples: usize,
 }
@@ -134,25 +134,16 @@ impl MonitorOptions {
     pub(super) fn tracker(
         &self,
         robot: &Arc<Robot>,
-        sensors: (&SensorTree, &[bool]),
+        sensed: (&SensorTree, &ContactEvidence),
         noise: &TorqueNoise,
-    ) -> Result<Option<(ContactEvidence, ContactTracker)>> {
+    ) -> Result<Option<ContactTracker>> {
         if self.samples == 0 || !self.wanted_points.is_empty() {
             return Ok(None);
         }
-        let (tree, wanted) = sensors;
         let options = MapOptions { samples: self.samples, ..MapOptions::default() };
-        let wrench_threshold = check_wrench_threshold(tree, &self.isolation.wrench_threshold)?;
-        let evidence = ContactEvidence::new(robot, tree, wanted, &wrench_threshold);
         let locate_within = self.isolation.locate_within;
-        let surface = SurfaceContact::new(
-            Arc::clone(robot),
-            &options,
-            (tree, &evidence),
-            noise.clone(),
-            locate_within,
-        )?;
-        Ok(surface.map(|surface| (evidence, ContactTracker::new(surface))))
+        let surface = SurfaceContact::new(Arc::clone(robot), &options, sensed, noise.clone(), locate_within)?;
+        Ok(surface.map(ContactTracker::new))
     }
 
     /// With the noise and the offsets of sensors of the calibration, and thresholds for its rate of false alarms, where none

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use nalgebra::Vector6;
 
 use crate::error::Result;
+use crate::isolation::WithoutWanted;
 use crate::observer::WrenchObserver;
 use crate::observer::{MomentumObserver, Step};
 use crate::robot::{Kinematics, Robot};
@@ -152,6 +153,11 @@ impl Sensing {
     /// Whether contacts behind a sensor are wanted.
     pub fn has_wanted(&self) -> bool {
         self.wanted.contains(&true)
+    }
+
+    /// What is measured without wanted contacts.
+    pub fn without_wanted(&self) -> WithoutWanted<'_> {
+        WithoutWanted { unwanted: &self.unwanted, all: &self.trusted, blind: &self.blind }
     }
 
     /// The sensors, those with a reading active.

@@ -63,8 +63,7 @@ impl ContactMonitor {
             bias.set_limit(greatest_bias);
         }
         self.release.set_rule(rule);
-        let wanted = tree.wanted(&options.isolation.wanted_contacts)?;
-        self.tracker = options.tracker(&self.robot, (&tree, &wanted), &noise)?;
+        self.tracker = options.tracker(&self.robot, (&tree, self.isolator.evidence()), &noise)?;
         self.threshold = threshold;
         self.deviation.copy_from_slice(noise.at_rest());
         self.detector.set_wrench_threshold(wrench_threshold);

@@ -41,6 +41,11 @@ impl Frame {
         stack(&self.axes[axis].linear, &self.axes[axis].angular)
     }
 
+    /// `wrench^T gram wrench` is the squared norm of what a wrench at the link's origin does.
+    pub fn gram(&self) -> &Matrix6<f64> {
+        &self.gram
+    }
+
     /// The rows of a measurement that feel the link: the velocity variables that move it, then the components of the wrenches of
     /// sensors that it loads.
     pub fn rows(&self) -> &[usize] {
@@ -222,5 +227,46 @@ impl Frames {
         for (axis, &k) in frame.axes.iter().zip(&frame.rows) {
             torque[k] -= (axis.linear.dot(force) + axis.angular.dot(&moment)) * deviation[k];
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::torque::Target;
+
+    #[test]
+    fn a_sensor_feels_the_force_and_its_moment_about_the_sensor() {
+        let robot = Robot::example_arm();
+        let mut kinematics = Kinematics::new(&robot);
+        kinematics.set_configuration(&robot, &[0.3, 0.8, -0.4, 0.9, 0.5, 0.7, 0.2]);
+        let (link, body, origin) = (6, robot.links()[4].body, Vector3::new(0.01, -0.02, 0.03));
+        let loads =
+            (0..robot.links().len()).map(|link| robot.chain(robot.links()[link].body).contains(&body));
+        let mount = SensorMount { body, origin, loads: loads.collect() };
+        let mut frames = Frames::with_sensors(&robot, vec![3, link], &[mount]);
+        let deviation: Vec<f64> = (0..13).map(|k| 0.1 + 0.05 * f64::from(k)).collect();
+        frames.update(&robot, &kinematics, &deviation);
+        assert_eq!((frames.links[3].rows().len(), frames.links[link].rows().len()), (4, 13));
+
+        let (point, force) = (Vector3::new(0.02, 0.05, 0.1), Vector3::new(3.0, -8.0, 5.0));
+        let mut measured = vec![0.0; 13];
+        frames.subtract(link, &point, &-force, &deviation, &mut measured);
+        let pose = frames.links[link].pose;
+        let state = &kinematics.bodies[body];
+        let sensor = kinematics.origin + state.position + state.rotation * origin;
+        let force_in_world = pose.rotation * force;
+        let moment = (pose.transform_point(&point) - sensor).cross(&force_in_world);
+        for axis in 0..3 {
+            assert!((measured[7 + axis] - force_in_world[axis]).abs() < 1e-12);
+            assert!((measured[10 + axis] - moment[axis]).abs() < 1e-12);
+        }
+        // The Gram matrix and the products are those of all rows.
+        let mut target = Target::new(&frames);
+        target.set(&frames, &measured, &deviation);
+        let wrench = stack(&force, &point.cross(&force));
+        let squared: f64 = measured.iter().zip(&deviation).map(|(row, noise)| (row / noise).powi(2)).sum();
+        assert!((wrench.dot(&(frames.links[link].gram * wrench)) - squared).abs() < 1e-9 * squared);
+        assert!((wrench.dot(&target.on(link).product) - squared).abs() < 1e-9 * squared);
     }
 }
