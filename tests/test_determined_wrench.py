@@ -50,7 +50,7 @@ def test_it_is_that_of_least_squares_and_covers_the_truth() -> None:
         (contact,) = contacts
         wrench, covariance = stated(truth.q, contact.link, tau)
         got = contact.determined_wrench_covariance
-        # A prior of the moment by the vertices or by a sphere that holds them differs by less than a factor of two.
+        # The moment's prior by vertices and by a sphere about them differ by less than a factor of two.
         low, high = np.linalg.eigvalsh(covariance), np.linalg.eigvalsh(got)
         ratio = high / low
         assert ratio.min() > 0.5
@@ -63,7 +63,7 @@ def test_it_is_that_of_least_squares_and_covers_the_truth() -> None:
             error = contact.determined_wrench - true
             squared.append(error @ np.linalg.solve(got, error))
     assert len(squared) > 80
-    # Nine tenths of a chi-square distribution of six variables; of directions that only the prior limits, less is seen.
+    # Nine tenths of a chi-square distribution of six variables; less where only the prior limits a direction.
     assert np.mean(np.array(squared) < 10.64) > 0.9
     assert np.median(squared) > 0.5
 

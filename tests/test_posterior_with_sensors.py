@@ -1,4 +1,4 @@
-"""The posterior over all surface with force/torque sensors and on a floating base: noisy torques and wrenches."""
+"""The posterior over all surface with force/torque sensors and on floating bases, noisy measurements."""
 
 from __future__ import annotations
 
