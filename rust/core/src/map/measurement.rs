@@ -44,7 +44,9 @@ impl Measurement {
         self.stated.copy_from_slice(stated);
         self.deviation.fill(1.0);
         self.plain.update(robot, kinematics, &self.deviation);
-        self.blur(0.0);
+        let links = std::mem::take(&mut self.plain.wanted);
+        self.blur(0.0, &links);
+        self.plain.wanted = links;
     }
 
     /// The same where only contacts on one link are looked at.
@@ -63,14 +65,14 @@ impl Measurement {
         self.set(robot, kinematics, torque, stated);
     }
 
-    /// Weighs torques and moments with another standard deviation beside the stated one (Nm).
-    pub fn blur(&mut self, more: f64) {
-        for ((deviation, stated), is_force) in self.deviation.iter_mut().zip(&self.stated).zip(&self.is_force)
-        {
+    /// Weighs torques and moments with another standard deviation beside the stated one (Nm), as these links feel them.
+    pub fn blur(&mut self, more: f64, links: &[usize]) {
+        let Self { torque, stated, deviation, is_force, plain, frames, target } = self;
+        for ((deviation, stated), is_force) in deviation.iter_mut().zip(&*stated).zip(&*is_force) {
             *deviation = if *is_force { *stated } else { stated.hypot(more) };
         }
-        self.frames.weigh(&self.plain, &self.deviation);
-        self.target.set(&self.frames, &self.torque, &self.deviation);
+        frames.weigh(plain, deviation, links);
+        target.set_on(links, frames, torque, deviation);
     }
 
     /// The links as they are weighed.

@@ -48,6 +48,8 @@ enum Stage {
         rank: usize,
         block: usize,
     },
+    /// Makes the first pieces of the samples.
+    Collect,
     /// Divides the pieces in `order` from one on.
     Pieces {
         next: usize,
@@ -59,6 +61,7 @@ enum Stage {
     Spreads {
         next: usize,
     },
+    Clusters,
     Done,
 }
 
@@ -76,6 +79,8 @@ pub(crate) struct SurfacePosterior {
     /// Links of the samples, those first whose joints feel most, and that half of the squared norm over its noise: no contact there
     /// has a log-likelihood above it.
     likely: Vec<(f64, usize)>,
+    /// Those of them where a contact is possible.
+    possible: Vec<usize>,
     /// Logarithm of the greatest likelihood of the samples so far.
     greatest: f64,
     pub(super) leaves: Vec<Leaf>,
@@ -113,6 +118,7 @@ impl SurfacePosterior {
             count: 0,
             found: vec![PushLikelihood::none(0.0); samples.links.iter().map(|link| link.blocks.len()).sum()],
             likely: Vec::with_capacity(samples.links.len()),
+            possible: Vec::with_capacity(samples.links.len()),
             greatest: f64::NEG_INFINITY,
             leaves: Vec::with_capacity(most),
             log_weights: Vec::with_capacity(most),
@@ -174,6 +180,8 @@ impl SurfacePosterior {
         self.edge = self.samples.spacing();
         self.level = 0;
         let force = self.rough_force();
+        self.possible.clear();
+        self.possible.extend(self.samples.links.iter().map(|link| link.link));
         self.blur(CURVED * self.edge * force);
         let Self { likely, samples, measurements, count, .. } = self;
         let share = 0.5 / *count as f64;
@@ -191,17 +199,18 @@ impl SurfacePosterior {
     pub fn step(&mut self) -> bool {
         self.stage = match self.stage {
             Stage::Samples { rank, block } => self.weigh_samples(rank, block),
+            Stage::Collect => self.take_samples(),
             Stage::Pieces { next } => self.divide(next),
             Stage::Line { next } => self.follow_line(next),
             Stage::Spreads { next } => self.find_spreads(next),
+            Stage::Clusters => self.find_clusters(),
             Stage::Done => Stage::Done,
         };
         self.is_done()
     }
 
     /// The force of the contact that explains the torques best, of a few samples of each link (N).
-    fn rough_force(&mut self) -> f64 {
-        self.blur(0.0);
+    fn rough_force(&self) -> f64 {
         let mut best = (f64::NEG_INFINITY, 0.0);
         for samples in &self.samples.links {
             let Some(block) = samples.blocks.first() else { continue };
@@ -218,7 +227,8 @@ impl SurfacePosterior {
     }
 
     fn blur(&mut self, error: f64) {
-        self.measurements[..self.count].iter_mut().for_each(|measurement| measurement.blur(error));
+        let Self { measurements, count, possible, .. } = self;
+        measurements[..*count].iter_mut().for_each(|measurement| measurement.blur(error, possible));
     }
 
     /// What all measurements say of contacts on a block of pieces: the mean of the logarithms, since they are correlated and
@@ -268,13 +278,16 @@ impl SurfacePosterior {
             self.greatest = found.log.iter().flatten().copied().fold(self.greatest, f64::max);
             (block, work) = (block + 1, work + self.count);
         }
-        self.take_samples();
-        self.next_level()
+        Stage::Collect
     }
 
     /// The samples that have a share of the posterior are its first pieces, and the best one of each link and side: a sample is
     /// coarse, and which link it is may only show on smaller pieces.
-    fn take_samples(&mut self) {
+    fn take_samples(&mut self) -> Stage {
+        let Self { likely, samples, possible, greatest, .. } = self;
+        let others = likely.iter().filter(|(bound, _)| *bound >= *greatest - IMPOSSIBLE);
+        possible.clear();
+        possible.extend(others.map(|(_, link)| samples.links[*link].link));
         self.leaves.clear();
         let without = self.without_contact();
         for samples in &self.samples.links {
@@ -306,6 +319,7 @@ impl SurfacePosterior {
                 }
             }
         }
+        self.next_level()
     }
 
     /// Whether smaller pieces are needed.
@@ -362,6 +376,10 @@ impl SurfacePosterior {
             }
             next += 1;
         }
+        Stage::Clusters
+    }
+
+    fn find_clusters(&mut self) -> Stage {
         let frames = self.measurements[self.count - 1].frames();
         self.clusters.find(&self.robot, frames, &self.leaves, &self.weights);
         Stage::Done

@@ -198,9 +198,9 @@ impl Frames {
         }
     }
 
-    /// Takes on the pose of `plain` frames, whose rows are not weighed, with the standard deviation of each row.
-    pub fn weigh(&mut self, plain: &Frames, deviation: &[f64]) {
-        for &index in &self.wanted {
+    /// Takes on the pose of `plain` frames, whose rows are not weighed, with the standard deviation of each row; for some links.
+    pub fn weigh(&mut self, plain: &Frames, deviation: &[f64], links: &[usize]) {
+        for &index in links {
             let (frame, plain) = (&mut self.links[index], &plain.links[index]);
             frame.pose = plain.pose;
             frame.gram = Matrix6::zeros();

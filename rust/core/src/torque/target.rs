@@ -24,8 +24,13 @@ impl Target {
 
     /// Takes on the rows of a measurement with their standard deviations.
     pub fn set(&mut self, frames: &Frames, torque: &[f64], deviation: &[f64]) {
+        self.set_on(&frames.wanted, frames, torque, deviation);
+    }
+
+    /// The same for some links.
+    pub fn set_on(&mut self, links: &[usize], frames: &Frames, torque: &[f64], deviation: &[f64]) {
         self.squared = torque.iter().zip(deviation).map(|(torque, noise)| (torque / noise).powi(2)).sum();
-        for &link in &frames.wanted {
+        for &link in links {
             let (frame, LinkTarget { torque: own, product }) = (&frames.links[link], &mut self.links[link]);
             *product = Vector6::zeros();
             for (axis, (value, &k)) in own.iter_mut().zip(frame.rows()).enumerate() {
