@@ -1,5 +1,7 @@
 //! Where a line of action enters a body, or one behind it.
 
+use nalgebra::Vector3;
+
 use super::found::{Entry, Scene};
 use super::line::{best_first, LineCast};
 use super::result::Candidate;
@@ -8,6 +10,24 @@ use super::wrench::WrenchEstimate;
 
 /// Hits of one line that are looked at.
 const HITS: usize = 256;
+
+/// Chi-square of a line that does not enter its body, even if it is displaced by two standard deviations: three.
+const MISSED: f64 = 9.0;
+/// Displacements of a line, in standard deviations along each of two directions: ever farther.
+const DISPLACED: [[f64; 2]; 12] = [
+    [1.0, 0.0],
+    [-1.0, 0.0],
+    [0.0, 1.0],
+    [0.0, -1.0],
+    [1.0, 1.0],
+    [1.0, -1.0],
+    [-1.0, 1.0],
+    [-1.0, -1.0],
+    [2.0, 0.0],
+    [-2.0, 0.0],
+    [0.0, 2.0],
+    [0.0, -2.0],
+];
 
 /// Workspace.
 #[derive(Debug, Clone)]
@@ -29,12 +49,46 @@ impl Caster {
     /// Where the line of action enters the body.
     pub fn hit_on(&mut self, scene: Scene, body: usize, wrench: &WrenchEstimate) -> Option<Entry> {
         let (start, direction) = wrench.line_of_action()?;
+        self.hit_along(scene, body, &start, &direction)
+    }
+
+    fn hit_along(
+        &mut self,
+        scene: Scene,
+        body: usize,
+        start: &Vector3<f64>,
+        direction: &Vector3<f64>,
+    ) -> Option<Entry> {
         self.hits.clear();
         for link in scene.region.links_of(scene.robot, body) {
-            self.line.cast(scene.robot, scene.kinematics, link, &start, &direction, &mut self.hits);
+            self.line.cast(scene.robot, scene.kinematics, link, start, direction, &mut self.hits);
         }
         best_first(&mut self.hits);
         Entry::of(&self.hits)
+    }
+
+    /// The same for the line, or the nearest displaced one that enters the body, and the chi-square of the displacement.
+    pub fn hit_displaced(
+        &mut self,
+        scene: Scene,
+        body: usize,
+        wrench: &WrenchEstimate,
+    ) -> (Option<Entry>, f64) {
+        let hit = self.hit_on(scene, body, wrench);
+        let Some((start, direction)) = wrench.line_of_action().filter(|_| hit.is_none()) else {
+            return (hit, 0.0);
+        };
+        let centre = scene.kinematics.bodies[body].position;
+        let at = start + direction * direction.dot(&(centre - start));
+        let [first, second] = wrench.displacements(&at);
+        for [one, two] in DISPLACED {
+            let start = start + first * one + second * two;
+            let hit = self.hit_along(scene, body, &start, &direction);
+            if hit.is_some() {
+                return (hit, one * one + two * two);
+            }
+        }
+        (None, MISSED)
     }
 
     /// The same, or on a body behind whose joints feel what the wrench would cause, but for `limit`.

@@ -14,7 +14,7 @@ use crate::robot::jacobian::jacobian_column;
 use crate::robot::Kinematics;
 use crate::sensor::{sensor_torque, SensorIndex};
 use crate::spatial::vector::{moved, split, stack};
-use crate::torque::LEVEL;
+use crate::torque::{largest, LEVEL};
 
 /// Moment along the force that rounding leaves [tolerances].
 const EXACT: f64 = 1e-6;
@@ -32,10 +32,24 @@ impl ContactIsolator {
         self.residual.copy_from_slice(torque);
         self.measured.fill(0.0);
         let Self {
-            robot, regions, residual, measured, limit, noise, active, sensed, wrench_threshold, ..
+            robot,
+            regions,
+            residual,
+            measured,
+            limit,
+            noise,
+            growing,
+            active,
+            sensed,
+            wrench_threshold,
+            ..
         } = self;
         let power = if wrenches.is_empty() { 1 } else { 2 };
-        limit.iter_mut().zip(noise.at_rest()).for_each(|(limit, noise)| *limit = (LEVEL * noise).powi(power));
+        let largest = largest(torque);
+        for (k, limit) in limit.iter_mut().enumerate() {
+            let growing = if *growing { noise.growing(k, LEVEL, torque[k], largest) } else { 0.0 };
+            *limit = growing.hypot(LEVEL * noise.at_rest()[k]).powi(power);
+        }
         active.clear();
         active.extend(wrenches.iter().map(Option::is_some));
         regions.set_active(robot, active);
