@@ -5,20 +5,23 @@ from __future__ import annotations
 from rich.table import Table
 
 from ..harness import scaled, sheet
+from .isolation import Stated
 from .noise import Noise
 from .noisy_score import NoisyScore, noisy_score
 from .study import Study
 from .wording import NAMES, percent
 
-LABELS = ("noise", "contacts", "measured", "stated as")
+LABELS = ("noise", "con-\ntacts", "rank", "meas-\nured", "stated as")
 FIGURES = ("n", "num-\nber", "links", "loca-\nted", "of these\nwrong", "point\nmm", "force\n%")
 NOTE = (
-    "Noise: standard deviation on every component; 0.01 Nm stands for 0.05 N, 0.005 Nm\n"
-    "at sensors, 0.1 Nm for 0.5 N, 0.05 Nm. Thresholds: three standard deviations at\n"
-    "usual torques and wrenches; noise model: of the torques, wrenches as before.\n"
-    "Number, links: as many, just the true ones; wrong: off by more than 1 cm and three\n"
-    "point_std; point, force: median errors of the located contacts."
+    "Noise: a share of each component and a floor, 0.01 Nm (sensors: 0.05 N,\n"
+    "0.005 Nm), or 0.1 Nm (0.5 N, 0.05 Nm). Thresholds: three standard deviations\n"
+    "at usual torques and wrenches; model: a NoiseModel of the torques instead.\n"
+    "Number: as many contacts as there are; links: just the true ones; wrong: off\n"
+    "by more than 1 cm and 3 point_std; point, force: medians of the located ones."
 )
+
+STATED: dict[Stated, str] = {"nothing": "nothing", "thresholds": "thresholds", "noise model": "model"}
 
 
 def noise_table(study: Study) -> Table:
@@ -30,18 +33,18 @@ def noise_table(study: Study) -> Table:
         key=lambda run: noise_name(run.setting.noise),
     ):
         setting = run.setting
-        for determined in (True, False):
-            verdicts = [each for each in run.verdicts if (each.rank_deficit == 0) == determined]
-            if not verdicts or (len(run.scenes[0].touches) == 1 and not determined):
-                continue
+        determined = [verdict for verdict in run.verdicts if verdict.rank_deficit == 0]
+        groups = [("full", determined), ("all", run.verdicts)]
+        for rank, verdicts in groups if len(determined) < len(run.verdicts) else groups[1:]:
             noise = noise_name(setting.noise)
             if before not in ("", noise):
                 table.add_section()
             table.add_row(
                 "" if noise == before else noise,
-                contacts_name(len(run.scenes[0].touches), determined),
+                f"{len(run.scenes[0].touches)}",
+                rank,
                 NAMES[setting.method],
-                setting.stated,
+                STATED[setting.stated],
                 *_cells(noisy_score(verdicts)),
             )
             before = noise
@@ -52,11 +55,6 @@ def noise_name(noise: Noise) -> str:
     """A case of noise in the first column."""
     relative = f"{100 * noise.relative:g} %, " if noise.relative else ""
     return f"{relative}{noise.torque:g} Nm"
-
-
-def contacts_name(contacts: int, determined: bool) -> str:
-    """A set of scenes."""
-    return f"{contacts}" if contacts == 1 or determined else f"{contacts}, deficit"
 
 
 def _cells(figures: NoisyScore) -> list[str]:

@@ -11,23 +11,10 @@ use super::wrench::WrenchEstimate;
 /// Hits of one line that are looked at.
 const HITS: usize = 256;
 
-/// Chi-square of a line that does not enter its body, even if it is displaced by two standard deviations: three.
+/// Chi-square of a line that does not enter its body unless it is displaced by three standard deviations.
 const MISSED: f64 = 9.0;
-/// Displacements of a line, in standard deviations along each of two directions: ever farther.
-const DISPLACED: [[f64; 2]; 12] = [
-    [1.0, 0.0],
-    [-1.0, 0.0],
-    [0.0, 1.0],
-    [0.0, -1.0],
-    [1.0, 1.0],
-    [1.0, -1.0],
-    [-1.0, 1.0],
-    [-1.0, -1.0],
-    [2.0, 0.0],
-    [-2.0, 0.0],
-    [0.0, 2.0],
-    [0.0, -2.0],
-];
+/// Parts of the way to the middle of a link that a line is displaced by: its edge may be nearer.
+const PARTS: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
 
 /// Workspace.
 #[derive(Debug, Clone)]
@@ -67,7 +54,7 @@ impl Caster {
         Entry::of(&self.hits)
     }
 
-    /// The same for the line, or the nearest displaced one that enters the body, and the chi-square of the displacement.
+    /// The same for the line, or for one that its errors displace towards the body, and the chi-square of that.
     pub fn hit_displaced(
         &mut self,
         scene: Scene,
@@ -78,17 +65,30 @@ impl Caster {
         let Some((start, direction)) = wrench.line_of_action().filter(|_| hit.is_none()) else {
             return (hit, 0.0);
         };
-        let centre = scene.kinematics.bodies[body].position;
-        let at = start + direction * direction.dot(&(centre - start));
-        let [first, second] = wrench.displacements(&at);
-        for [one, two] in DISPLACED {
-            let start = start + first * one + second * two;
-            let hit = self.hit_along(scene, body, &start, &direction);
-            if hit.is_some() {
-                return (hit, one * one + two * two);
+        let mut best = (None, MISSED);
+        for link in scene.region.links_of(scene.robot, body) {
+            let Some(middle) = scene.middle(link) else { continue };
+            let at = start + direction * direction.dot(&(middle - start));
+            let [far, near] = wrench.principal_displacements(&at);
+            let [along_far, along_near] = [far, near]
+                .map(|displacement| displacement.dot(&(middle - at)) / displacement.norm_squared());
+            for across in [0.0, 1.0] {
+                for part in PARTS {
+                    let [far_part, near_part] = [part * along_far, part * across * along_near];
+                    let chi_square = far_part * far_part + near_part * near_part;
+                    // Also where there is no number.
+                    if !(chi_square < best.1) {
+                        continue;
+                    }
+                    let start = start + far * far_part + near * near_part;
+                    let hit = self.hit_along(scene, body, &start, &direction);
+                    if hit.is_some() {
+                        best = (hit, chi_square);
+                    }
+                }
             }
         }
-        (None, MISSED)
+        best
     }
 
     /// The same, or on a body behind whose joints feel what the wrench would cause, but for `limit`.

@@ -3,12 +3,13 @@
 
 use super::found::{Entry, Scene};
 use super::pair::{estimate_pair, PairEstimate};
+use super::report::LINE_UNKNOWNS;
 use super::rivals::UNLIKELY;
 use super::rows::TorqueRows;
 use super::several::{SeveralContacts, GOOD, PAIR_WORK};
+use super::surface_search::steepness;
 use super::wrench::DEVIATION;
 use crate::math::chi_square::upper_limit;
-use crate::math::least_squares::exceeds;
 use crate::robot::WORLD;
 
 /// A contact is looked for on bodies at most so many joints away.
@@ -17,22 +18,35 @@ const AROUND: usize = 2;
 const ROUNDS: usize = 3;
 /// Pairs of bodies that are tried in a call: what its work permits.
 pub(super) const TRIED: usize = 96;
-/// A point and a force for each contact.
-const UNKNOWNS: usize = 10;
 /// What a pair may leave of the torques.
 #[derive(Clone, Copy)]
 enum Most {
-    /// No more than noise: where the pair is to do without a tip, or to take the place of one force.
+    /// No more than noise: where the pair is to do without a tip.
     Noise,
     /// What any solution may leave.
     Good,
+    /// So much less than one force, whose chi-square this is, that five more unknowns do not explain it.
+    One(f64),
+}
+
+impl Most {
+    fn permits(self, chi_square: f64, checks: usize) -> bool {
+        let count = checks as f64;
+        chi_square
+            <= match self {
+                Most::Noise => upper_limit(checks),
+                Most::Good => count * (GOOD / DEVIATION).powi(2),
+                // Noise may be larger than it is said to be.
+                Most::One(one) => one - upper_limit(LINE_UNKNOWNS) * (chi_square / count).max(1.0),
+            }
+    }
 }
 
 /// Two bodies that may be touched, and how well forces on them explain the torques.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Hypothesis {
     bodies: [usize; 2],
-    /// Of all torques of the region, with what displaces a line so that it enters its body.
+    /// Of all torques of the region, with what displaces a line so that it enters its body, and of forces across normals.
     chi_square: f64,
     entries: [Option<Entry>; 2],
 }
@@ -65,10 +79,10 @@ impl SeveralContacts {
         self.choose(scene, rows, tips, most)
     }
 
-    /// Two forces that leave no more than noise of the torques that one does not explain.
-    pub(super) fn choose_two(&mut self, scene: Scene, rows: &TorqueRows, tip: usize) -> bool {
+    /// Two forces that leave less of the torques than one, whose chi-square is given.
+    pub(super) fn choose_two(&mut self, scene: Scene, rows: &TorqueRows, tip: usize, one: f64) -> bool {
         self.clear();
-        self.choose(scene, rows, &[tip], Most::Noise)
+        self.choose(scene, rows, &[tip], Most::One(one))
     }
 
     fn choose(&mut self, scene: Scene, rows: &TorqueRows, tips: &[usize], most: Most) -> bool {
@@ -117,6 +131,9 @@ impl SeveralContacts {
                 break;
             }
         }
+        let entering = self.tried.iter().filter(|other| other.entries.iter().all(Option::is_some));
+        let best = entering.min_by(|a, b| a.chi_square.total_cmp(&b.chi_square)).copied();
+        let Some(best) = best else { return false };
         let kept = best.chi_square < least && self.keep_likely(scene, rows, &best, most);
         self.open = if kept { least < best.chi_square + UNLIKELY } else { self.open };
         kept
@@ -130,8 +147,9 @@ impl SeveralContacts {
 
     /// Of the solution, which leaves a part of the wrenches open: at least this.
     fn open_chi_square(&self, scene: Scene, rows: &TorqueRows, bodies: [usize; 2]) -> f64 {
-        let pair = estimate_pair(scene.robot, scene.region, rows, bodies);
-        pair.map_or(f64::INFINITY, |pair| chi_square(scene, rows, &pair, pair.unexplained_squares()))
+        let across = self.solutions.first().map_or(0.0, |solution| solution.steepness);
+        estimate_pair(scene.robot, scene.region, rows, bodies)
+            .map_or(f64::INFINITY, |pair| across + chi_square(scene, rows, &pair, pair.unexplained_squares()))
     }
 
     /// The hypothesis becomes the solution.
@@ -139,12 +157,8 @@ impl SeveralContacts {
         let [Some(first), Some(second)] = best.entries else { return false };
         let count =
             scene.region.feels.iter().filter(|feels| **feels).count() + 6 * usize::from(rows.root.is_some());
-        let checks = count.saturating_sub(UNKNOWNS).max(1);
-        let most = match most {
-            Most::Noise => upper_limit(checks),
-            Most::Good => checks as f64 * (GOOD / DEVIATION).powi(2),
-        };
-        if exceeds(best.chi_square, most) {
+        let checks = count.saturating_sub(2 * LINE_UNKNOWNS).max(1);
+        if !most.permits(best.chi_square, checks) {
             return false;
         }
         let Some(pair) = estimate_pair(scene.robot, scene.region, rows, best.bodies) else { return false };
@@ -192,7 +206,9 @@ impl SeveralContacts {
         let mut entries = [None; 2];
         for (side, entry) in entries.iter_mut().enumerate() {
             let (hit, distance) = self.caster.hit_displaced(scene, bodies[side], &wrenches[side]);
-            (*entry, chi_square) = (hit, chi_square + distance);
+            // Forces along a surface are as unlikely as at a coefficient of friction of one.
+            let across = hit.map_or(0.0, |entry| steepness(&wrenches[side].force, &entry.hit.normal));
+            (*entry, chi_square) = (hit, chi_square + distance + across);
         }
         chi_square.is_finite().then_some(Hypothesis { bodies, chi_square, entries })
     }
