@@ -11,6 +11,7 @@ use super::options::IsolatorOptions;
 use super::region::{Region, Regions};
 use super::result::{Candidate, Isolation, CANDIDATES};
 use super::rows::{Root, TorqueRows};
+use super::sensed::check_wrenches;
 use super::several::SeveralContacts;
 use super::surface_contact::{SurfaceContact, TorqueNow};
 use super::tips::TipSearch;
@@ -414,23 +415,4 @@ impl ContactIsolator {
         let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
         self.several.identify(scene, &self.rows);
     }
-}
-
-fn check_wrenches(tree: &SensorTree, wrenches: &[Option<Vector6<f64>>]) -> Result<()> {
-    if wrenches.len() != tree.len() {
-        return Err(Error::input(
-            "wrenches",
-            format!("expected one for each of the {} sensors, got {}", tree.len(), wrenches.len()),
-        ));
-    }
-    for (name, wrench) in tree.names().iter().zip(wrenches) {
-        let Some(wrench) = wrench else { continue };
-        if let Some(value) = wrench.iter().find(|x| x.is_nan() || x.abs() > crate::robot::LARGEST) {
-            return Err(Error::input(
-                "wrenches",
-                format!("that of '{name}' has {value}; give finite numbers [N, Nm], or none (NaN in NumPy) to leave it out"),
-            ));
-        }
-    }
-    Ok(())
 }

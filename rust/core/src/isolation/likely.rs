@@ -21,24 +21,18 @@ pub(super) const TRIED: usize = 96;
 /// What a pair may leave of the torques.
 #[derive(Clone, Copy)]
 enum Most {
-    /// No more than noise: where the pair is to do without a tip.
+    /// No more than noise: where the pair is to do without a tip, or to take the place of one force.
     Noise,
     /// What any solution may leave.
     Good,
-    /// So much less than one force, whose chi-square this is, that five more unknowns do not explain it.
-    One(f64),
 }
 
 impl Most {
-    fn permits(self, chi_square: f64, checks: usize) -> bool {
-        let count = checks as f64;
-        chi_square
-            <= match self {
-                Most::Noise => upper_limit(checks),
-                Most::Good => count * (GOOD / DEVIATION).powi(2),
-                // Noise may be larger than it is said to be.
-                Most::One(one) => one - upper_limit(LINE_UNKNOWNS) * (chi_square / count).max(1.0),
-            }
+    fn chi_square(self, checks: usize) -> f64 {
+        match self {
+            Most::Noise => upper_limit(checks),
+            Most::Good => checks as f64 * (GOOD / DEVIATION).powi(2),
+        }
     }
 }
 
@@ -79,10 +73,10 @@ impl SeveralContacts {
         self.choose(scene, rows, tips, most)
     }
 
-    /// Two forces that leave less of the torques than one, whose chi-square is given.
-    pub(super) fn choose_two(&mut self, scene: Scene, rows: &TorqueRows, tip: usize, one: f64) -> bool {
+    /// Two forces that leave no more than noise of the torques that one does not explain.
+    pub(super) fn choose_two(&mut self, scene: Scene, rows: &TorqueRows, tip: usize) -> bool {
         self.clear();
-        self.choose(scene, rows, &[tip], Most::One(one))
+        self.choose(scene, rows, &[tip], Most::Noise)
     }
 
     fn choose(&mut self, scene: Scene, rows: &TorqueRows, tips: &[usize], most: Most) -> bool {
@@ -131,9 +125,6 @@ impl SeveralContacts {
                 break;
             }
         }
-        let entering = self.tried.iter().filter(|other| other.entries.iter().all(Option::is_some));
-        let best = entering.min_by(|a, b| a.chi_square.total_cmp(&b.chi_square)).copied();
-        let Some(best) = best else { return false };
         let kept = best.chi_square < least && self.keep_likely(scene, rows, &best, most);
         self.open = if kept { least < best.chi_square + UNLIKELY } else { self.open };
         kept
@@ -158,7 +149,7 @@ impl SeveralContacts {
         let count =
             scene.region.feels.iter().filter(|feels| **feels).count() + 6 * usize::from(rows.root.is_some());
         let checks = count.saturating_sub(2 * LINE_UNKNOWNS).max(1);
-        if !most.permits(best.chi_square, checks) {
+        if best.chi_square > most.chi_square(checks) {
             return false;
         }
         let Some(pair) = estimate_pair(scene.robot, scene.region, rows, best.bodies) else { return false };

@@ -19,13 +19,15 @@ impl ContactIsolator {
         best.filter(|(chi_square, _)| *chi_square <= self.most_of_one()).map(|(_, tip)| tip)
     }
 
-    /// Two contacts on one branch, where one force leaves more than noise of the torques, and two clearly less.
+    /// Two contacts on one branch, where one force leaves more than noise of the torques and two do not.
     pub(super) fn isolate_two(&mut self, kinematics: &Kinematics, tip: usize) -> bool {
         let one = self.chi_square_of_one(kinematics, tip);
-        let Some(one) = one.filter(|chi_square| *chi_square > self.most_of_one()) else { return false };
+        if one.is_none_or(|chi_square| chi_square <= self.most_of_one()) {
+            return false;
+        }
         self.set_rows(kinematics, None, false);
         let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
-        let two = self.several.choose_two(scene, &self.rows, tip, one);
+        let two = self.several.choose_two(scene, &self.rows, tip);
         if two {
             self.identify(kinematics, None);
             self.report_several(kinematics);
