@@ -19,10 +19,11 @@ from contactsense_studies.vorndamme2017.information import rank_deficit
 from contactsense_studies.vorndamme2017.instruments import external_torque, external_wrenches
 from contactsense_studies.vorndamme2017.isolation import Setting, Task, make_sensors, run_tasks
 from contactsense_studies.vorndamme2017.judge import Answer, Verdict, assign, judge, judge_answers
+from contactsense_studies.vorndamme2017.noise import Noise
+from contactsense_studies.vorndamme2017.noisy_settings import stated_settings
 from contactsense_studies.vorndamme2017.physics import simulate
 from contactsense_studies.vorndamme2017.scenes import Scene, fives, pairs, singles, standing_pose
 from contactsense_studies.vorndamme2017.score import by_deficit, score
-from contactsense_studies.vorndamme2017.study import matched_setting
 from contactsense_studies.vorndamme2017.time_series import GAIN, filtered_half_sine, half_sine
 
 EXACT = 1e-9  # [m]
@@ -160,7 +161,7 @@ def test_judging_knows_open_and_false_contacts(robot: cs.Robot) -> None:
 
 def test_any_number_of_processes_gives_the_same_answer(robot: cs.Robot) -> None:
     tasks = [
-        Task(Setting(noise=0.01), pairs(robot, 120, 416), 0, 3),
+        Task(Setting(noise=Noise(0.01)), pairs(robot, 120, 416), 0, 3),
         Task(Setting(), singles(robot, 30, 416), 0, 3),
     ]
     one, two = (run_tasks(tasks, processes) for processes in (1, 2))
@@ -235,7 +236,8 @@ def test_five_contacts_are_exact(robot: cs.Robot) -> None:
 
 def test_noise_of_a_hundredth_leaves_the_links_right(robot: cs.Robot) -> None:
     scenes = singles(robot, 400, 420)
-    for setting in (Setting(noise=0.01), matched_setting(robot, scenes, "torques", 0.01)):
+    noise = Noise(0.01)
+    for setting in (Setting(noise=noise), stated_settings(robot, scenes, "torques", noise)[0]):
         found = score(verdicts(scenes, setting, seed=5))
         assert found.links_right > 0.95
         assert found.near > 0.85

@@ -11,9 +11,10 @@ from contactsense_studies.vorndamme2017.hits import ideal_series, scaled, simula
 from contactsense_studies.vorndamme2017.instruments import carries
 from contactsense_studies.vorndamme2017.isolation import Setting, Task, run_tasks
 from contactsense_studies.vorndamme2017.judge import Verdict
+from contactsense_studies.vorndamme2017.noise import Noise
+from contactsense_studies.vorndamme2017.noisy_settings import stated_settings
 from contactsense_studies.vorndamme2017.scenes import Scene, fives, pairs, singles
 from contactsense_studies.vorndamme2017.score import score
-from contactsense_studies.vorndamme2017.study import matched_setting
 from contactsense_studies.vorndamme2017.time_series import Series
 
 EXACT = 1e-9  # [m]
@@ -71,7 +72,8 @@ def test_five_contacts_are_exact_with_sensors(robot: cs.Robot) -> None:
 
 def test_noise_leaves_the_links_right(robot: cs.Robot) -> None:
     scenes = singles(robot, 400, 521)
-    for setting in (Setting("both", noise=0.01), matched_setting(robot, scenes, "both", 0.01)):
+    noise = Noise(0.01)
+    for setting in (Setting("both", noise), stated_settings(robot, scenes, "both", noise)[0]):
         assert score(verdicts(scenes, setting, seed=5)).links_right > 0.95
 
 

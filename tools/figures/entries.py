@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from . import demos, identifiability, long_studies, real_arm, studies
+from . import demos, identifiability, long_studies, noisy_contacts, real_arm, studies
 from .entry import Figure
 
 PYTHON = ("python", "-m")
@@ -100,6 +100,16 @@ FIGURES = (
         "docs/vorndamme2017.md",
         reduce=long_studies.vorndamme2017,
         table=long_studies.vorndamme2017_time_table,
+        long=True,
+    ),
+    Figure(
+        "vorndamme2017_noise",
+        "One, two and five simultaneous contacts on Atlas, noisy measurements.",
+        (*STUDY, "vorndamme2017", "--json"),
+        "Shares of all scenes, contacts or located contacts of a kind; default counts, seed 0.",
+        "docs/vorndamme2017.md",
+        reduce=noisy_contacts.reduce,
+        table=noisy_contacts.make_table,
         long=True,
     ),
     Figure(

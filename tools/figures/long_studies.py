@@ -59,15 +59,14 @@ def vorndamme2017(raw: Raw) -> dict[str, Any]:
     """The scores behind the table: with torques, with nine sensors too, and of the paper's steps."""
     (study,) = raw[""]
     columns = (("torques", "contactsense"), ("both", "contactsense"), ("torques", "pseudoinverse"))
-    kept: dict[str, Any] = {
-        run["scenes"] + (" with noise" if run["noise"] else ""): {} for run in study["runs"]
-    }
+    kept: dict[str, Any] = {}
     for run in study["runs"]:
         # With noise, those whose thresholds are left as they are.
-        if (run["method"], run["solver"]) in columns and not isinstance(run["torque_threshold"], list):
+        if (run["method"], run["solver"]) in columns and run["stated"] == "nothing":
             column = "paper" if run["solver"] == "pseudoinverse" else run["method"]
             scores = {key: run[key] for key in ("all", "by_rank_deficit", "rank_deficient")}
-            kept[run["scenes"] + (" with noise" if run["noise"] else "")][column] = scores
+            noisy = " with noise" if any(run["noise"].values()) else ""
+            kept.setdefault(run["scenes"] + noisy, {})[column] = scores
     strongest = max(hit["amplitude"] for hit in study["hits"])
     delays = {
         hit["method"]: hit["peak_delay"]

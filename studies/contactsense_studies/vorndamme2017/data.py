@@ -10,6 +10,7 @@ import numpy as np
 
 from ..harness import mean
 from .instruments import Method
+from .noisy_score import noisy_score
 from .score import by_deficit, score
 from .study import Run, Study
 from .time_series import Series
@@ -45,6 +46,15 @@ def _run_data(run: Run) -> dict[str, Any]:
         "all": asdict(score(run.verdicts)),
         "by_rank_deficit": {str(deficit): asdict(score(group)) for deficit, group in groups.items()},
         "rank_deficient": asdict(score(open_ones)) if open_ones else None,
+        **(_noisy_data(run) if run.setting.stated != "nothing" else {}),
+    }
+
+
+def _noisy_data(run: Run) -> dict[str, Any]:
+    determined = [verdict for verdict in run.verdicts if verdict.rank_deficit == 0]
+    return {
+        "determined_claims": asdict(noisy_score(determined)),
+        "all_claims": asdict(noisy_score(run.verdicts)),
     }
 
 

@@ -12,6 +12,7 @@ from contactsense.sim import joint_torque
 from contactsense.sim._arrays import FloatArray
 from contactsense.sim.atlas import SENSOR_LINKS
 
+from .noise import NONE, Noise
 from .scenes import Scene
 
 DISTAL_LINKS = SENSOR_LINKS[:4]  # hands and feet
@@ -57,13 +58,14 @@ def moved_by(robot: Robot, link: str) -> frozenset[int]:
 
 
 def observed(
-    robot: Robot, scene: Scene, method: Method, noise: float = 0.0, seed: list[int] | None = None
+    robot: Robot, scene: Scene, method: Method, noise: Noise = NONE, seed: list[int] | None = None
 ) -> tuple[FloatArray, FloatArray | None]:
-    """External torque and wrenches as measured; `noise` is relative, on every component."""
+    """External torque and wrenches as measured."""
     rng = np.random.default_rng(seed)
-    tau = external_torque(robot, scene) * (1.0 + noise * rng.standard_normal(robot.nv))
+    tau = external_torque(robot, scene)
+    tau = tau + noise.on_torques(tau) * rng.standard_normal(robot.nv)
     if method == "torques":
         return tau, None
     wrenches = external_wrenches(robot, scene, sensor_links(method))
-    wrenches *= 1.0 + noise * rng.standard_normal(wrenches.shape)
+    wrenches = wrenches + noise.on_wrenches(wrenches) * rng.standard_normal(wrenches.shape)
     return (np.zeros(robot.nv) if method == "sensors" else tau), wrenches

@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
-from contactsense import ContactIsolator, ForceTorqueSensor, Robot
+from contactsense import ContactIsolator, ForceTorqueSensor, NoiseModel, Robot
 
 from ..harness import Report, silent
 from ..parallel import run_trials
 from .information import rank_deficit
 from .instruments import Method, observed, sensor_links
 from .judge import Verdict, judge, judge_answers
+from .noise import NONE, Noise
 from .pseudoinverse import isolate as isolate_by_pseudoinverse
 from .scenes import Scene
 
@@ -24,15 +25,22 @@ CHUNK = 100
 THRESHOLD = 1e-3  # [N, Nm], the paper's and the isolator's default
 
 
+# What the isolator is told of the noise.
+Stated: TypeAlias = Literal["nothing", "thresholds", "noise model"]
+
+
 @dataclass(frozen=True)
 class Setting:
     """How scenes are measured and isolated."""
 
     method: Method = "torques"
+    noise: Noise = NONE
+    stated: Stated = "nothing"
+    # [N, Nm], one or one a coordinate; none: those of the noise model.
+    torque_threshold: float | tuple[float, ...] | None = THRESHOLD
+    # [N, Nm], one or six a sensor
+    wrench_threshold: float | tuple[tuple[float, ...], ...] = THRESHOLD
     solver: Literal["contactsense", "pseudoinverse"] = "contactsense"
-    noise: float = 0.0  # relative, standard deviation, on every component
-    torque_threshold: float | tuple[float, ...] = THRESHOLD  # [N, Nm], one or one a coordinate
-    wrench_threshold: float = THRESHOLD  # [N, Nm]
 
 
 @dataclass(frozen=True)
@@ -47,14 +55,16 @@ class Task:
 
 def make_isolator(robot: Robot, setting: Setting) -> ContactIsolator:
     """The isolator for a setting, with the sensors of its method."""
-    if setting.method == "torques":
-        return ContactIsolator(robot, torque_threshold=setting.torque_threshold)
-    return ContactIsolator(
-        robot,
-        sensors=make_sensors(setting.method),
-        torque_threshold=setting.torque_threshold,
-        wrench_threshold=setting.wrench_threshold,
-    )
+    options: dict[str, Any] = {}
+    if setting.torque_threshold is not None:
+        options["torque_threshold"] = setting.torque_threshold
+    if setting.stated == "noise model":
+        noise = setting.noise
+        options["noise"] = NoiseModel(torque=noise.torque, relative=noise.relative, model=0.0)
+    if setting.method != "torques":
+        options["sensors"] = make_sensors(setting.method)
+        options["wrench_threshold"] = setting.wrench_threshold
+    return ContactIsolator(robot, **options)
 
 
 def make_sensors(method: Method) -> list[ForceTorqueSensor]:

@@ -18,6 +18,15 @@ NEAR = 0.01  # [m], a point counts as the true one
 
 
 @dataclass(frozen=True)
+class Claim:
+    """A located contact beside the true one nearest to its point."""
+
+    error: float  # [m]
+    point_std: float  # [m], as the contact states it
+    force_error: float  # relative
+
+
+@dataclass(frozen=True)
 class Verdict:
     """One scene judged. A contact's estimate is its point, or its first candidate's where that is open."""
 
@@ -26,14 +35,18 @@ class Verdict:
     rank_deficit: int  # of the true contacts
     errors: tuple[float, ...]  # [m] of each true contact: to the estimate assigned to it; inf: there is none
     force_errors: tuple[float, ...]  # relative, of each true contact; NaN: the force assigned to it is open
-    located: int  # contacts said to be located
-    located_error: float  # [m] greatest distance of a located contact from the nearest true one; 0: none
+    claims: tuple[Claim, ...]  # of the contacts said to be located
     among_candidates: bool  # every true point is within 1 cm of some candidate
 
     @property
     def error(self) -> float:
         """Worst of `errors` [m]."""
         return max(self.errors)
+
+    @property
+    def located_error(self) -> float:
+        """Greatest error of a claim [m]; 0: there is none."""
+        return max((claim.error for claim in self.claims), default=0.0)
 
     @property
     def links_right(self) -> bool:
@@ -43,7 +56,7 @@ class Verdict:
     @property
     def all_located(self) -> bool:
         """As many contacts are said to be located as there are."""
-        return self.located == len(self.links)
+        return len(self.claims) == len(self.links)
 
     @property
     def wrong(self) -> bool:
@@ -60,6 +73,7 @@ class Answer:
     force: FloatArray  # (3,), NaN where it is open
     located: bool
     candidates: list[FloatArray]  # each (3,), the estimate among them
+    point_std: float = 0.0  # [m]
 
 
 def judge(robot: Robot, scene: Scene, isolation: Isolation, deficit: int | None = None) -> Verdict:
@@ -84,7 +98,12 @@ def judge_answers(scene: Scene, contacts: Sequence[Answer], deficit: int) -> Ver
         np.nan if j is None else _force_error(touch.force, contacts[j].force)
         for touch, j in zip(scene.touches, assigned, strict=True)
     ]
-    located = [index for index, contact in enumerate(contacts) if contact.located]
+    claims = []
+    for column, contact in enumerate(contacts):
+        if contact.located:
+            nearest = int(distances[:, column].argmin())
+            force_error = _force_error(scene.touches[nearest].force, contact.force)
+            claims.append(Claim(float(distances[nearest, column]), contact.point_std, force_error))
     offered = [point for contact in contacts for point in contact.candidates]
     return Verdict(
         links=scene.links,
@@ -92,8 +111,7 @@ def judge_answers(scene: Scene, contacts: Sequence[Answer], deficit: int) -> Ver
         rank_deficit=deficit,
         errors=tuple(errors),
         force_errors=tuple(forces),
-        located=len(located),
-        located_error=float(distances[:, located].min(axis=0).max(initial=0.0)) if located else 0.0,
+        claims=tuple(claims),
         among_candidates=all(_near(point, offered) for point in true),
     )
 
@@ -104,7 +122,7 @@ def answer(contact: Contact) -> Answer:
     if np.isfinite(contact.point).all():
         candidates.insert(0, contact.point)
     estimate = candidates[0] if candidates else np.full(3, np.nan)
-    return Answer(contact.link, estimate, contact.force, contact.located, candidates)
+    return Answer(contact.link, estimate, contact.force, contact.located, candidates, contact.point_std)
 
 
 def assign(distances: FloatArray) -> list[int | None]:

@@ -10,18 +10,15 @@ from rich.table import Table
 
 from ..harness import print_tables, scaled, sheet
 from .data import series_figures
-from .instruments import METHODS, Method
+from .instruments import METHODS
 from .isolation import THRESHOLD
+from .noise import NONE
+from .report_noise import noise_table
 from .score import Score, by_deficit, score
 from .study import Run, Study
 from .timing import GOALS, PAPER
+from .wording import NAMES, percent
 
-NAMES: dict[Method, str] = {
-    "torques": "torques",
-    "distal": "+ 4",
-    "both": "+ 9",
-    "sensors": "9 alone",
-}
 BASELINE = "paper*"
 SCORES = ("n", "exact", "1 cm", "25 cm", "candi-\ndate", "links", "loca-\nted", "false", "off\nm")
 SERIES = ("n", "loca-\nted", "delay\nms", "at peak\nms", "correct\nby 2nd", "correct\nshare", "worst\nm")
@@ -44,7 +41,6 @@ NOTES = (
     "Links: the estimated links are the contact links. Located: as many contacts are",
     "located as there are; false: a located point is more than 1 cm from every contact;",
     "off: the largest such distance. Rank deficit: of the true contacts, by NumPy.",
-    "Limit 3 sd: thresholds of three standard deviations of the noise at usual torques.",
     "* The steps (28), (26), 4 of the paper in NumPy, with the true contact links given.",
 )
 
@@ -56,7 +52,8 @@ def print_study(study: Study, console: Console) -> None:
         _scores("Two contacts, every pair of links", _by_rank(study, "pairs")),
         _scores("Two contacts, uniform by area", _by_rank(study, "pairs by area")),
         _scores("Five contacts: hands, feet, and torso or first shoulder link", _by_rank(study, "fives")),
-        _scores(f"With {study.options.noise:.3g} relative noise, determined scenes", _noisy(study)),
+        _scores(f"With {study.options.noise:.3g} relative noise, determined scenes", _untold(study)),
+        noise_table(study),
         series_table(study),
         timing_table(study),
         summary_table(study),
@@ -88,17 +85,16 @@ def _by_rank(study: Study, name: str) -> Iterable[Row]:
             yield ("", "all"), score(run.verdicts)
 
 
-def _noisy(study: Study) -> Iterable[Row]:
+def _untold(study: Study) -> Iterable[Row]:
     for run in study.runs:
-        if run.setting.noise:
+        if run.setting.noise != NONE and run.setting.stated == "nothing":
             determined = [verdict for verdict in run.verdicts if verdict.rank_deficit == 0]
-            matched = isinstance(run.setting.torque_threshold, tuple)
-            label = "" if matched else f"{len(run.scenes[0].touches)}, {NAMES[run.setting.method]}"
-            yield (label, "3 sd" if matched else f"{THRESHOLD:g}"), score(determined)
+            label = f"{len(run.scenes[0].touches)}, {NAMES[run.setting.method]}"
+            yield (label, f"{THRESHOLD:g}"), score(determined)
 
 
 def _runs(study: Study, name: str) -> list[Run]:
-    return [run for run in study.runs if run.name == name and not run.setting.noise]
+    return [run for run in study.runs if run.name == name and run.setting.noise == NONE]
 
 
 def _label(run: Run) -> str:
@@ -175,12 +171,3 @@ def summary_table(study: Study) -> Table:
             label = ""
         table.add_section()
     return table
-
-
-def percent(share: float) -> str:
-    """In %, rounded so that only all is 100 and only none is 0."""
-    if np.isnan(share):
-        return "-"
-    if share in (0.0, 1.0):
-        return f"{100 * share:.0f}"
-    return f"{min(max(100 * share, 0.01), 99.99):.{1 if 0.001 <= share <= 0.999 else 2}f}"

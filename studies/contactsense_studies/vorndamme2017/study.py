@@ -13,9 +13,11 @@ from contactsense import Robot
 from ..harness import Report, silent
 from ..parallel import run_trials
 from .hits import ideal_series, scaled, simulated_series
-from .instruments import METHODS, Method, external_torque, external_wrenches
-from .isolation import THRESHOLD, Setting, Task, run_tasks, shared_robot
+from .instruments import METHODS, Method
+from .isolation import Setting, Task, run_tasks, shared_robot
 from .judge import Verdict
+from .noise import Noise, noise_cases
+from .noisy_settings import stated_settings
 from .options import Options
 from .scenes import Scene, fives, pairs, singles
 from .time_series import Series
@@ -24,7 +26,7 @@ from .timing import Timing, measure
 TIMED = 1000  # scenes
 SIMULATED = 5  # one hit in so many
 AMPLITUDES = (1.0, 50.0)  # [N]
-SIGMAS = 3.0  # threshold over noise
+NOISY_METHODS: tuple[Method, ...] = ("torques", "both")
 
 
 @dataclass(frozen=True)
@@ -61,14 +63,12 @@ class Study:
     timings: list[Timing] = field(default_factory=list)
     complete: bool = True  # Ctrl-C did not end it early
 
-    def run(self, name: str, method: Method, noise: float = 0.0, *, matched: bool = False) -> Run:
-        """The run of a set of scenes; `matched`: with thresholds that suit the noise."""
+    def run(self, name: str, method: Method) -> Run:
+        """The run of a set of scenes with ideal measurements."""
         for run in self.runs:
-            setting = run.setting
-            ours = setting.solver == "contactsense" and matched == (setting.torque_threshold != THRESHOLD)
-            if ours and (run.name, setting.method, setting.noise) == (name, method, noise):
+            if (run.name, run.setting) == (name, Setting(method)):
                 return run
-        raise KeyError((name, method, noise, matched))
+        raise KeyError((name, method))
 
     def baseline(self, name: str) -> Run:
         """The paper's steps with true links, on a set of scenes."""
@@ -138,34 +138,12 @@ def _tasks(
         tasks.append((name, Task(Setting(solver="pseudoinverse"), scenes, 0, options.seed)))
     for name in ("singles", "pairs", "fives"):
         for method in [method for method in methods if method != "distal"]:
-            for setting in (
-                Setting(method, noise=options.noise),
-                matched_setting(robot, sets[name], method, options.noise),
-            ):
-                tasks.append((name, Task(setting, sets[name], 0, options.seed)))
+            tasks.append((name, Task(Setting(method, Noise(options.noise)), sets[name], 0, options.seed)))
+        for method in [method for method in methods if method in NOISY_METHODS]:
+            for noise in noise_cases(options.noise):
+                for setting in stated_settings(robot, sets[name], method, noise):
+                    tasks.append((name, Task(setting, sets[name], 0, options.seed)))
     return tasks
-
-
-def matched_setting(robot: Robot, scenes: Sequence[Scene], method: Method, noise: float) -> Setting:
-    """Thresholds of three standard deviations of the noise, at the torques and wrenches usual in the scenes.
-
-    Usual: the root mean square of those that are not nil, for each coordinate, and over all sensors.
-    """
-    torques = np.array([external_torque(robot, scene) for scene in scenes])
-    wrenches = np.array([external_wrenches(robot, scene) for scene in scenes])
-    per_torque = SIGMAS * noise * _usual(torques)
-    return Setting(
-        method,
-        noise=noise,
-        torque_threshold=tuple(np.maximum(per_torque, THRESHOLD).tolist()),
-        wrench_threshold=max(SIGMAS * noise * float(_usual(wrenches.reshape(-1, 1))[0]), THRESHOLD),
-    )
-
-
-def _usual(values: np.ndarray) -> np.ndarray:
-    counted = np.maximum((values != 0.0).sum(axis=0), 1)
-    usual: np.ndarray = np.sqrt((values**2).sum(axis=0) / counted)
-    return usual
 
 
 def _hits(

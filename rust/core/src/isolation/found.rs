@@ -6,7 +6,7 @@ use super::line::farthest_entry;
 use super::region::Region;
 use super::result::Candidate;
 use super::wrench::WrenchEstimate;
-use crate::robot::{Kinematics, Robot};
+use crate::robot::{Kinematics, Link, LinkIndex, Robot};
 
 /// Where the search is.
 #[derive(Clone, Copy)]
@@ -14,6 +14,16 @@ pub(super) struct Scene<'a> {
     pub robot: &'a Robot,
     pub kinematics: &'a Kinematics,
     pub region: &'a Region,
+}
+
+impl Scene<'_> {
+    /// The middle of a link's surface, from the kinematics' origin; none where it has no surface.
+    pub fn middle(&self, link: LinkIndex) -> Option<Vector3<f64>> {
+        let Link { surface, body, placement, .. } = &self.robot[link];
+        let (centre, _) = surface.as_ref()?.bounding_sphere();
+        let body = &self.kinematics.bodies[*body];
+        Some(body.position + body.rotation * (placement.rotation * centre + placement.translation))
+    }
 }
 
 /// Where a line of action enters a body first.

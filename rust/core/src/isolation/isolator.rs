@@ -13,6 +13,7 @@ use super::options::IsolatorOptions;
 use super::region::{Region, Regions};
 use super::result::{Candidate, Isolation, CANDIDATES};
 use super::rows::{Root, TorqueRows};
+use super::sensed::check_wrenches;
 use super::several::SeveralContacts;
 use super::surface_contact::SurfaceContact;
 use super::tips::TipSearch;
@@ -76,6 +77,10 @@ pub struct ContactIsolator {
     pub(super) regions: Regions,
     /// By velocity variable: its torque says nothing of contacts.
     left_out: Vec<bool>,
+    /// Whether the noise that grows with the torques is stated and not only assumed.
+    stated: bool,
+    /// Whether it widens the limits in this call.
+    pub(super) growing: bool,
     /// The one being worked on; it changes places with its entry in `regions`.
     pub(super) region: Region,
     /// Which sensors have a reading.
@@ -89,7 +94,7 @@ pub struct ContactIsolator {
     pub(super) tips: TipSearch,
     pub(super) bodies: BodySet,
     pub(super) line: LineCast,
-    rows: TorqueRows,
+    pub(super) rows: TorqueRows,
     pub(super) several: SeveralContacts,
     /// What is measured, as rows.
     evidence: ContactEvidence,
@@ -140,6 +145,8 @@ impl ContactIsolator {
             regions: Regions::new(&robot, tree, wanted),
             region: Region::whole(&robot),
             left_out: vec![false; nv],
+            stated: options.noise.is_some(),
+            growing: false,
             sensed: vec![0.0; nv],
             residual: vec![0.0; nv],
             measured: vec![0.0; nv],
@@ -190,7 +197,10 @@ impl ContactIsolator {
         check_wrenches(&self.regions.tree, wrenches)?;
         let mut kinematics = std::mem::replace(&mut self.kinematics, Kinematics::empty());
         kinematics.set_configuration(&self.robot, q);
+        // The posterior has its own noise.
+        self.growing = self.stated && self.surface.is_none();
         self.isolate_at(&kinematics, tau_ext, wrenches, None);
+        self.growing = false;
         if !self.isolation.contacts.is_empty() {
             let Self { evidence, surface, wrench_posterior, regions, isolation, robot, noise, .. } = self;
             evidence.set(robot, &kinematics, &regions.tree, (tau_ext, noise.at_rest()), wrenches);
@@ -333,10 +343,15 @@ impl ContactIsolator {
         if self.find_tips(LEFT_OVER) == 0 {
             return;
         }
+        if let Some(tip) = self.lone_tip(kinematics) {
+            return self.isolate_single(kinematics, tip);
+        }
         self.set_rows(kinematics, None, true);
         match single(self) {
             Some(tip) if self.estimate(kinematics, tip).rank < 6 || self.roughly(tip) => {
-                self.isolate_single(kinematics, tip);
+                if !self.isolate_two(kinematics, tip) {
+                    self.isolate_single(kinematics, tip);
+                }
             }
             tip => {
                 if exact || self.solve_roughly(kinematics, None, false) {
@@ -384,7 +399,7 @@ impl ContactIsolator {
         RADIUS_90 * point_std <= self.locate_within
     }
 
-    fn set_rows(&mut self, kinematics: &Kinematics, root: Option<&Root>, widened: bool) {
+    pub(super) fn set_rows(&mut self, kinematics: &Kinematics, root: Option<&Root>, widened: bool) {
         let noise = widened.then_some(&self.noise);
         self.rows.set(&self.robot, kinematics, &self.residual, &self.measured, &self.limit, noise);
         self.rows.root = root.map(|root| if widened { *root } else { root.narrow() });
@@ -433,28 +448,9 @@ impl ContactIsolator {
         solved
     }
 
-    fn identify(&mut self, kinematics: &Kinematics, root: Option<&Root>) {
+    pub(super) fn identify(&mut self, kinematics: &Kinematics, root: Option<&Root>) {
         self.set_rows(kinematics, root, true);
         let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
         self.several.identify(scene, &self.rows);
     }
-}
-
-fn check_wrenches(tree: &SensorTree, wrenches: &[Option<Vector6<f64>>]) -> Result<()> {
-    if wrenches.len() != tree.len() {
-        return Err(Error::input(
-            "wrenches",
-            format!("expected one for each of the {} sensors, got {}", tree.len(), wrenches.len()),
-        ));
-    }
-    for (name, wrench) in tree.names().iter().zip(wrenches) {
-        let Some(wrench) = wrench else { continue };
-        if let Some(value) = wrench.iter().find(|x| x.is_nan() || x.abs() > crate::robot::LARGEST) {
-            return Err(Error::input(
-                "wrenches",
-                format!("that of '{name}' has {value}; give finite numbers [N, Nm], or none (NaN in NumPy) to leave it out"),
-            ));
-        }
-    }
-    Ok(())
 }

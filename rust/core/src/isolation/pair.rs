@@ -128,6 +128,11 @@ impl PairEstimate {
         [self.total - second, second]
     }
 
+    /// Sum of squares of what no two wrenches explain, in tolerances.
+    pub fn unexplained_squares(&self) -> f64 {
+        self.unexplained
+    }
+
     /// Root mean square of what no two wrenches explain, in tolerances.
     pub fn unexplained_share(&self) -> f64 {
         (self.unexplained / self.redundant.max(1) as f64).sqrt()

@@ -129,7 +129,7 @@ impl ContactIsolator {
     }
 
     /// Torques of the region.
-    fn torque_count(&self) -> usize {
+    pub(super) fn torque_count(&self) -> usize {
         self.region.feels.iter().filter(|feels| **feels).count()
     }
 

@@ -9,7 +9,7 @@ use crate::robot::jacobian::jacobian_column;
 use crate::robot::Kinematics;
 
 /// A hypothesis is unlikely if its chi-square exceeds the best one's by this: a likelihood ratio of 100.
-const UNLIKELY: f64 = 9.21;
+pub(super) const UNLIKELY: f64 = 9.21;
 
 /// What else the torques allow.
 #[derive(Debug, Clone, Copy)]

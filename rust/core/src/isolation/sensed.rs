@@ -9,12 +9,13 @@ use super::result::Contact;
 use super::rows::{Root, SENSOR_SHARE};
 use super::wrench::WrenchEstimate;
 use crate::detection::is_over;
+use crate::error::{Error, Result};
 use crate::observer::WrenchObserver;
 use crate::robot::jacobian::jacobian_column;
 use crate::robot::Kinematics;
-use crate::sensor::{sensor_torque, SensorIndex};
+use crate::sensor::{sensor_torque, SensorIndex, SensorTree};
 use crate::spatial::vector::{moved, split, stack};
-use crate::torque::LEVEL;
+use crate::torque::{largest, LEVEL};
 
 /// Moment along the force that rounding leaves [tolerances].
 const EXACT: f64 = 1e-6;
@@ -32,10 +33,24 @@ impl ContactIsolator {
         self.residual.copy_from_slice(torque);
         self.measured.fill(0.0);
         let Self {
-            robot, regions, residual, measured, limit, noise, active, sensed, wrench_threshold, ..
+            robot,
+            regions,
+            residual,
+            measured,
+            limit,
+            noise,
+            growing,
+            active,
+            sensed,
+            wrench_threshold,
+            ..
         } = self;
         let power = if wrenches.is_empty() { 1 } else { 2 };
-        limit.iter_mut().zip(noise.at_rest()).for_each(|(limit, noise)| *limit = (LEVEL * noise).powi(power));
+        let largest = largest(torque);
+        for (k, limit) in limit.iter_mut().enumerate() {
+            let growing = if *growing { noise.growing(k, LEVEL, torque[k], largest) } else { 0.0 };
+            *limit = growing.hypot(LEVEL * noise.at_rest()[k]).powi(power);
+        }
         active.clear();
         active.extend(wrenches.iter().map(Option::is_some));
         regions.set_active(robot, active);
@@ -216,4 +231,24 @@ fn moved_squares(wrench: &Vector6<f64>, arm: &Vector3<f64>) -> Vector6<f64> {
         arms.x * forces.y + arms.y * forces.x,
     );
     stack(&forces, &(moments + turned))
+}
+
+/// One for each sensor, finite or none.
+pub(super) fn check_wrenches(tree: &SensorTree, wrenches: &[Option<Vector6<f64>>]) -> Result<()> {
+    if wrenches.len() != tree.len() {
+        return Err(Error::input(
+            "wrenches",
+            format!("expected one for each of the {} sensors, got {}", tree.len(), wrenches.len()),
+        ));
+    }
+    for (name, wrench) in tree.names().iter().zip(wrenches) {
+        let Some(wrench) = wrench else { continue };
+        if let Some(value) = wrench.iter().find(|x| x.is_nan() || x.abs() > crate::robot::LARGEST) {
+            return Err(Error::input(
+                "wrenches",
+                format!("that of '{name}' has {value}; give finite numbers [N, Nm], or none (NaN in NumPy) to leave it out"),
+            ));
+        }
+    }
+    Ok(())
 }

@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 
 use super::caster::Caster;
 use super::found::{Entry, Found, Scene, Solution};
+use super::likely::{Hypothesis, TRIED};
 use super::open_part::{close, close_near};
 use super::pair::{estimate_pair, Open, PairEstimate};
 use super::rows::{TorqueRows, SILENT};
@@ -22,7 +23,7 @@ use crate::robot::{Robot, WORLD};
 /// What rounding leaves of an exact solution [tolerances].
 const EXACT: f64 = 1e-6;
 /// Root mean square of what a good solution leaves under noise [tolerances].
-const GOOD: f64 = 1.0;
+pub(super) const GOOD: f64 = 1.0;
 /// Misfit of a solution between samples of the surfaces, which is not exact.
 const INEXACT: f64 = f64::INFINITY;
 /// Solutions kept.
@@ -30,7 +31,7 @@ const SOLUTIONS: usize = 16;
 /// Rounds until the contact links stand still; ten, as in Vorndamme 2017.
 const ROUNDS: usize = 10;
 /// Multiplications of an estimate of two wrenches, and of a pair of sampled places.
-const PAIR_WORK: usize = 6000;
+pub(super) const PAIR_WORK: usize = 6000;
 const PLACES_WORK: usize = 80;
 /// A search with fewer pairs of places says nothing.
 const FEWEST_PAIRS: usize = 400;
@@ -61,6 +62,8 @@ pub(super) struct SeveralContacts {
     /// Misfit of one more wrench, and its body, best first.
     pub(super) one_more: Vec<(f64, usize)>,
     pub(super) places: Vec<(usize, Vector3<f64>)>,
+    /// Pairs of bodies that have been judged.
+    pub(super) tried: Vec<Hypothesis>,
 }
 
 impl SeveralContacts {
@@ -82,10 +85,11 @@ impl SeveralContacts {
             bodies: Vec::with_capacity(max_contacts + 1),
             one_more: Vec::with_capacity(robot.body_count()),
             places: Vec::with_capacity(max_contacts + 2),
+            tried: Vec::with_capacity(TRIED),
         }
     }
 
-    fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.found.clear();
         self.solutions.clear();
         self.rank_deficit = 0;
@@ -188,7 +192,7 @@ impl SeveralContacts {
             [first, second] => self.solve_pair(scene, rows, [second, first], GOOD),
             _ => false,
         };
-        if solved {
+        if self.choose_bodies(scene, rows, tips) || solved {
             return true;
         }
         self.clear();
@@ -248,7 +252,8 @@ impl SeveralContacts {
             let Some(pair) = estimate_pair(scene.robot, scene.region, rows, bodies) else { return false };
             self.rank_deficit = pair.deficit;
             self.verified = pair.checks() > 0;
-            self.open = pair.deficit > 1;
+            // What closes a deficit has errors that the covariance of the wrenches leaves out.
+            self.open = pair.deficit > usize::from(limit <= EXACT);
             if proof && !self.verified {
                 return false;
             }
@@ -324,7 +329,7 @@ impl SeveralContacts {
     }
 
     /// Adds a solution in its place: those that push most squarely first.
-    fn keep(&mut self, wrenches: [WrenchEstimate; 2], entries: [Entry; 2], misfit: f64) {
+    pub(super) fn keep(&mut self, wrenches: [WrenchEstimate; 2], entries: [Entry; 2], misfit: f64) {
         let steep: f64 = wrenches.iter().zip(&entries).map(|(w, e)| steepness(&w.force, &e.hit.normal)).sum();
         let rank = self.solutions.partition_point(|other| other.steepness <= steep);
         if rank < SOLUTIONS {

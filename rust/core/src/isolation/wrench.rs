@@ -121,15 +121,34 @@ impl WrenchEstimate {
 
     /// Two displacements of the line at a point of it, across the line and each other, by one standard deviation (m).
     pub fn displacements(&self, point: &Vector3<f64>) -> [Vector3<f64>; 2] {
+        let root = self.displacement_root(point);
+        let along = self.force / self.force.norm();
+        let first = basis::across(&along);
+        [first, along.cross(&first)].map(|direction| direction * root.tr_mul(&direction).norm())
+    }
+
+    /// The same along the axes of the ellipse that holds one standard deviation, the longer first.
+    pub fn principal_displacements(&self, point: &Vector3<f64>) -> [Vector3<f64>; 2] {
+        let root = self.displacement_root(point);
+        let along = self.force / self.force.norm();
+        let first = basis::across(&along);
+        let second = along.cross(&first);
+        let [on_first, on_second] = [first, second].map(|direction| root.tr_mul(&direction));
+        let (difference, product) =
+            (on_first.norm_squared() - on_second.norm_squared(), on_first.dot(&on_second));
+        let (sin, cos) = (0.5 * f64::atan2(2.0 * product, difference)).sin_cos();
+        [first * cos + second * sin, second * cos - first * sin]
+            .map(|direction| direction * root.tr_mul(&direction).norm())
+    }
+
+    /// A root of the covariance of the line's point next to `point`, across the line.
+    fn displacement_root(&self, point: &Vector3<f64>) -> Matrix3x6<f64> {
         let lever = point.cross_matrix();
         let across = self.force.cross_matrix() / self.force.norm_squared();
         let mut map = Matrix3x6::zeros();
         map.fixed_view_mut::<3, 3>(0, 0).copy_from(&(-(across * lever)));
         map.fixed_view_mut::<3, 3>(0, 3).copy_from(&across);
-        let root = map * self.root * self.torque_deviation();
-        let along = self.force / self.force.norm();
-        let first = basis::across(&along);
-        [first, along.cross(&first)].map(|direction| direction * root.tr_mul(&direction).norm())
+        map * self.root * self.torque_deviation()
     }
 
     /// For tolerances that were wider than what the errors of the torques are taken to be, by at least this share.
@@ -180,5 +199,30 @@ impl WrenchEstimate {
         } else {
             0.0
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::Robot;
+
+    #[test]
+    fn principal_displacements_are_the_axes_of_the_covariance() {
+        let robot = Robot::example_arm();
+        let mut kinematics = Kinematics::new(&robot);
+        kinematics.set_configuration(&robot, &[0.3, 0.8, -0.4, 0.9, 0.5, 0.7, 0.0]);
+        let torque = [0.4, -12.0, 3.0, 2.5, -1.2, 0.7, 0.3];
+        let wrench = estimate_wrench(&robot, &kinematics, robot.body_count() - 1, &torque, &[0.1; 7]);
+        let point = Vector3::new(0.2, -0.1, 0.4);
+        let [far, near] = wrench.principal_displacements(&point);
+        let root = wrench.displacement_root(&point);
+        let covariance = root * root.transpose();
+        for axis in [far, near] {
+            let left = covariance * axis - axis * axis.norm_squared();
+            assert!(left.norm() < 1e-9 * covariance.norm() * axis.norm(), "{left}");
+            assert!(axis.dot(&wrench.force).abs() < 1e-9 * axis.norm() * wrench.force.norm());
+        }
+        assert!(far.norm() >= near.norm() && near.norm() > 0.0);
     }
 }
