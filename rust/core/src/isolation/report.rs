@@ -97,7 +97,7 @@ impl ContactIsolator {
         }
         let mut contact = contact_at(&robot, kinematics, hit, &found.force, point_std);
         contact.candidates = candidates..self.isolation.candidates.len();
-        contact.located = determined && self.pushing && self.is_near_enough(point_std);
+        contact.located = determined && self.pushing && wrench.is_force() && self.is_near_enough(point_std);
         contact.verified = determined && wrench.is_redundant();
         self.isolation.contacts.push(contact);
         self.isolation.link_candidates.push(hit.link);
@@ -115,7 +115,8 @@ impl ContactIsolator {
         let (misfit, checks) = wrench.chi_square();
         let outside = self.chi_square_outside(body);
         let torques = self.torque_count();
-        let consistent = misfit <= upper_limit(checks)
+        let consistent = wrench.is_force()
+            && misfit <= upper_limit(checks)
             && misfit + outside <= upper_limit(torques.saturating_sub(LINE_UNKNOWNS));
         self.near.clone_from(&self.isolation.link_candidates);
         let point_std = self.spread(kinematics, wrench, hit);

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
 
 use super::wrench_rows::{WrenchRows, LEVER};
+use crate::math::chi_square::upper_limit;
 use crate::robot::jacobian::for_each_column;
 use crate::robot::{Kinematics, Robot};
 use crate::spatial::basis;
@@ -167,6 +168,12 @@ impl WrenchEstimate {
     pub fn chi_square(&self) -> (f64, usize) {
         let moment = self.moment_along();
         ((self.unexplained + moment * moment) / (DEVIATION * DEVIATION), self.redundant + 1)
+    }
+
+    /// Whether the moment along the force is no more than noise. Beside many redundant torques it would not be noticed, and
+    /// it is what two contacts on one chain differ by from one.
+    pub fn is_force(&self) -> bool {
+        (self.moment_along() / DEVIATION).powi(2) <= upper_limit(1)
     }
 
     /// Whether there are more torques than components of the wrench.
