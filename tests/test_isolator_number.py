@@ -43,8 +43,8 @@ def test_noise_of_an_idle_joint_is_no_second_contact(robot: cs.Robot) -> None:
         assert contact.link in ("l_foot", "l_talus")
         located += contact.located
     assert located > 10
-    # Five standard deviations are no noise.
-    tau[own_joint(robot, "r_hand")] = 8.0 * SIGMA
+    # This is no noise, also beside that which grows with the torque of the contact.
+    tau[own_joint(robot, "r_hand")] = 20.0 * SIGMA
     assert len(isolator.isolate(q, tau).contacts) > 1
 
 
@@ -86,8 +86,8 @@ def test_noise_stated_as_a_share_of_the_torque_is_believed(robot: cs.Robot) -> N
             for contact in isolator.isolate(q, tau).contacts:
                 counts[index] += contact.located
                 off = np.linalg.norm(contact.point - true.point)
-                assert not (index == 0 and contact.located) or off < 0.01 + 3 * contact.point_std
-    assert counts[0] > 25 > counts[1]
+                assert not contact.located or off < 0.01 + 3 * contact.point_std
+    assert min(counts) > 25
 
 
 def test_a_deficit_under_noise_locates_nothing(robot: cs.Robot) -> None:
@@ -96,7 +96,7 @@ def test_a_deficit_under_noise_locates_nothing(robot: cs.Robot) -> None:
     deficient = 0
     for _ in range(30):
         q = random_configuration(robot, rng)
-        pushes = [push(robot, q, "utorso", rng, 30.0), push(robot, q, "l_larm", rng, 30.0)]
+        pushes = [push(robot, q, "utorso", rng, 30.0), push(robot, q, "l_ufarm", rng, 30.0)]
         tau = torque(robot, pushes) + SIGMA * rng.standard_normal(robot.nv)
         isolation = cs.ContactIsolator(robot, torque_threshold=3 * SIGMA).isolate(q, tau)
         if isolation.rank_deficit == 1:

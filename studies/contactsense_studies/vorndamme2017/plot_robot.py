@@ -54,8 +54,8 @@ def draw_robot(figure: Figure, study: Study) -> None:
 
 
 def _kind(torques: Verdict, sensors: Verdict) -> str:
-    if torques.located and torques.error <= EXACT:
-        return BOTH if sensors.located and sensors.error <= EXACT else ALONE
+    if torques.all_located and torques.error <= EXACT:
+        return BOTH if sensors.all_located and sensors.error <= EXACT else ALONE
     return NEITHER
 
 

@@ -197,8 +197,7 @@ impl ContactIsolator {
         check_wrenches(&self.regions.tree, wrenches)?;
         let mut kinematics = std::mem::replace(&mut self.kinematics, Kinematics::empty());
         kinematics.set_configuration(&self.robot, q);
-        // The posterior has its own noise.
-        self.growing = self.stated && self.surface.is_none();
+        self.growing = self.stated;
         self.isolate_at(&kinematics, tau_ext, wrenches, None);
         self.growing = false;
         if !self.isolation.contacts.is_empty() {

@@ -100,6 +100,13 @@ impl Measurement {
         -0.5 * self.target.squared - self.deviation.iter().map(|deviation| deviation.ln()).sum::<f64>()
     }
 
+    /// The largest of the rows that do not feel a link, in standard deviations.
+    pub fn largest_elsewhere(&self, link: usize) -> f64 {
+        let own = self.frames.links[link].rows();
+        let others = self.torque.iter().zip(&self.deviation).enumerate().filter(|(k, _)| !own.contains(k));
+        others.map(|(_, (torque, deviation))| (torque / deviation).abs()).fold(0.0, f64::max)
+    }
+
     /// Squared norm, over all rows, of the torque that a force at a point of a link leaves over, in standard deviations (point
     /// and force in the link's frame); `left` is memory for as many numbers.
     pub fn left_over(

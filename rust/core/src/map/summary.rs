@@ -8,6 +8,8 @@ use crate::torque::{BestForce, ForceModel};
 
 /// Share of the posterior that a region holds.
 const REGION: f64 = 0.9;
+/// A row that a contact's link does not move and that exceeds so many standard deviations is no noise, however many rows agree.
+const NO_NOISE: f64 = 6.0;
 /// Share that three standard deviations of a point hold.
 const NEARLY_ALL: f64 = 0.99;
 /// Radius that holds it of a normal distribution along a line, in standard deviations (in two directions it is 1.52).
@@ -63,17 +65,20 @@ impl Summary {
         found.effective_samples = posterior.effective;
         found.log_evidence = posterior.log_evidence();
         let rows = self.left.len();
-        let mut misfit = f64::INFINITY;
+        let (mut misfit, mut largest) = (f64::INFINITY, 0.0);
         for mode in &found.estimate.modes {
             let frame = &frames.links[mode.link.get()];
             let mode = mode.in_link_frame(&frame.pose);
             let (link, normal) = (mode.link.get(), mode.pushed_normal());
             let target = measurement.target().on(link);
             let best = BestForce::of(frame, target, self.friction, &mode.point, &normal);
-            misfit = misfit.min(measurement.left_over(link, &mode.point, &best.force, &mut self.left));
+            let left = measurement.left_over(link, &mode.point, &best.force, &mut self.left);
+            if left < misfit {
+                (misfit, largest) = (left, measurement.largest_elsewhere(link));
+            }
         }
         found.residual = if misfit.is_finite() { (misfit / rows as f64).sqrt() } else { 0.0 };
-        found.explained = misfit <= upper_limit(rows);
+        found.explained = misfit <= upper_limit(rows) && largest <= NO_NOISE;
         found.region_radius = found.estimate.contact.map(|contact| contact.point).map(|point| {
             self.distances.clear();
             for (leaf, weight) in posterior.leaves.iter().zip(&posterior.weights) {
