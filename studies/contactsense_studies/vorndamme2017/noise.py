@@ -28,12 +28,14 @@ class Noise:
 
     def on_torques(self, tau: FloatArray) -> FloatArray:
         """Standard deviations for torques of this size."""
-        return np.hypot(self.relative * tau, self.torque)
+        deviations: FloatArray = np.hypot(self.relative * tau, self.torque)
+        return deviations
 
     def on_wrenches(self, wrenches: FloatArray) -> FloatArray:
         """Standard deviations for wrenches of this size `(..., 6)`."""
         floor = np.repeat([self.force, self.moment], 3)
-        return np.hypot(self.relative * wrenches, floor)
+        deviations: FloatArray = np.hypot(self.relative * wrenches, floor)
+        return deviations
 
 
 NONE = Noise()

@@ -76,8 +76,7 @@ impl Caster {
                 for part in PARTS {
                     let [far_part, near_part] = [part * along_far, part * across * along_near];
                     let chi_square = far_part * far_part + near_part * near_part;
-                    // Also where there is no number.
-                    if !(chi_square < best.1) {
+                    if chi_square >= best.1 || chi_square.is_nan() {
                         continue;
                     }
                     let start = start + far * far_part + near * near_part;
