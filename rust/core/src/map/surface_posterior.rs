@@ -333,8 +333,8 @@ impl SurfacePosterior {
 
     /// The pieces that are divided next.
     fn choose_pieces(&mut self) -> Stage {
-        let best = (0..self.leaves.len()).max_by(|&a, &b| self.weights[a].total_cmp(&self.weights[b]));
-        let Some(best) = best.filter(|_| self.level < MOST_LEVELS) else { return self.finish() };
+        let best = self.best_leaf().filter(|_| self.level < MOST_LEVELS);
+        let Some(best) = best else { return self.finish() };
         let force = self.leaves[best].force;
         let newest = self.newest().stated().iter().copied();
         let noise = newest.fold(f64::INFINITY, f64::min);
@@ -346,6 +346,11 @@ impl SurfacePosterior {
         self.blur(CURVED * self.edge * force);
         self.choose(best);
         Stage::Pieces { next: 0 }
+    }
+
+    /// The weightiest piece.
+    fn best_leaf(&self) -> Option<usize> {
+        (0..self.leaves.len()).max_by(|&a, &b| self.weights[a].total_cmp(&self.weights[b]))
     }
 
     fn weigh_leaves(&mut self) {

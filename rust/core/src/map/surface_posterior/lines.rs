@@ -51,8 +51,7 @@ impl SurfacePosterior {
 
     /// The line of action of the force that explains the torques best on the weightiest piece.
     fn best_line(&self) -> Option<Line> {
-        let best = (0..self.leaves.len()).max_by(|&a, &b| self.weights[a].total_cmp(&self.weights[b]))?;
-        let Leaf { link, place, pulls, .. } = &self.leaves[best];
+        let Leaf { link, place, pulls, .. } = &self.leaves[self.best_leaf()?];
         let measurement = self.newest();
         let (frame, target) = (&measurement.frames().links[*link], measurement.target().on(*link));
         let pushed = if *pulls { -place.normal } else { place.normal };
