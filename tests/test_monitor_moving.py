@@ -48,15 +48,15 @@ def place(pose: Vector, point: Vector) -> Vector:
     return moved
 
 
-def follow(motion: Motion, seed: int) -> Followed:
+def follow(motion: Motion, seed: int, noise: float = NOISE) -> Followed:
     """The monitor behind torques with slow errors, less those just before the contact."""
     generator = np.random.default_rng(seed)
-    monitor = cs.ContactMonitor(IIWA, dt=DT, torque_threshold=3 * NOISE, hold_time=0.1)
+    monitor = cs.ContactMonitor(IIWA, dt=DT, torque_threshold=3 * noise, hold_time=0.1)
     keep = DT / SLOW
-    error = NOISE * generator.normal(size=7)
+    error = noise * generator.normal(size=7)
     bias, ids, seen, truth = error, set(), None, np.zeros(3)
     for tick in range(QUIET + int(SECONDS / DT)):
-        error = error * (1.0 - keep) + NOISE * np.sqrt(2 * keep) * generator.normal(size=7)
+        error = error * (1.0 - keep) + noise * np.sqrt(2 * keep) * generator.normal(size=7)
         local, normal, q = motion(max(0.0, (tick - QUIET) * DT))
         pose = IIWA.link_pose(q, LINK)
         truth = place(pose, local)
@@ -124,24 +124,28 @@ def test_a_contact_that_slides_is_followed() -> None:
 
 
 def test_the_path_of_a_contact_that_moves_says_where_it_was_and_when() -> None:
-    followed = [follow(jump(seed), seed) for seed in SEEDS]
-    assert np.median([each.error for each in followed]) < 0.03
     errors = []
-    for seed, each in zip(SEEDS, followed, strict=True):
-        contact = each.contact
+    for seed in SEEDS:
+        contact = follow(jump(seed), seed, noise=0.2 * NOISE).contact
         count = len(contact.path_times)
         assert contact.path_local.shape == (count, 3)
         assert len(contact.path_links) == count
-        assert (np.diff(contact.path_times) > 0).all()
         assert contact.path_times[0] >= contact.since
+        assert (np.diff(contact.path_times) > 0).all()
         if count == 2 and set(contact.path_links) == {LINK}:
             middle = QUIET * DT + SECONDS / 2
-            assert middle < contact.path_times[1] < middle + 0.2
-            moved = np.linalg.norm(contact.path_local[1] - contact.path_local[0])
+            # A torque that gets weak counts only if it lasts.
+            assert middle - DT < contact.path_times[1] < middle + 0.3
             truth = jump(seed)
-            errors.append(abs(moved - np.linalg.norm(truth(SECONDS)[0] - truth(0.0)[0])))
+            ends = zip(contact.path_local, (0.0, SECONDS), strict=True)
+            errors.append(max(float(np.linalg.norm(point - truth(time)[0])) for point, time in ends))
     assert len(errors) > len(SEEDS) / 2
-    assert np.median(errors) < 0.04
+    assert np.median(errors) < 0.02
+
+
+def test_a_contact_that_jumps_is_followed() -> None:
+    # With all torques of the contact fused as of one place, 10 cm.
+    assert np.median([follow(jump(seed), seed).error for seed in SEEDS]) < 0.03
 
 
 def test_a_path_can_be_pickled_and_written() -> None:

@@ -307,7 +307,7 @@ impl PyContact {
     ///
     /// A point is added where the torques show that the contact has moved to another place on the robot; until then, the last
     /// point becomes more exact. At most 32: of a longer path, every second point is left out. Empty where contacts are not
-    /// followed, and where no point is known yet.
+    /// followed, and where neither a posterior nor a located point has been found yet.
     #[getter]
     fn path_local<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let rows = self.found.path.iter().map(|point| point.point_local.into());

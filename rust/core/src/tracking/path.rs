@@ -6,7 +6,7 @@ use crate::isolation::{Contact, PathPoint};
 
 /// Points that are kept at most.
 pub(crate) const MOST_POINTS: usize = 32;
-/// Closed forms locate a contact at another place if it is farther than this (m), and than so many of its standard deviations.
+/// Nearer places are one (m), and those of closed forms also within so many of their standard deviations.
 const FAR: f64 = 0.01;
 const SURELY: f64 = 3.0;
 
@@ -28,22 +28,23 @@ impl Path {
         &self.points[..self.count]
     }
 
-    /// Takes in the place of a tick (s). One that is not surely another, which `is_elsewhere` says of a posterior's, is a
-    /// better estimate of the last.
+    /// Takes in the place of a tick (s). A posterior's that is not another, as `is_elsewhere` says, is a better estimate of the
+    /// last.
     pub fn follow(&mut self, contact: &Contact, is_elsewhere: bool, time: f64) {
         let Some(place) = contact.place else { return };
         let new = PathPoint { time, link: contact.link, point_local: place.point_local };
         let last = self.points().last().copied();
-        let is_far = last.is_some_and(|last| {
-            let far = FAR.max(SURELY * place.std);
-            contact.located && (last.link != new.link || (last.point_local - new.point_local).norm() > far)
-        });
-        let is_new = if contact.posterior.is_some() { is_elsewhere } else { is_far };
-        match last {
-            Some(last) if !is_new => {
+        let is_beyond = |distance: f64| {
+            let far = |last: PathPoint| (last.point_local - new.point_local).norm() > distance;
+            last.is_none_or(|last| last.link != new.link || far(last))
+        };
+        match (last, &contact.posterior) {
+            (Some(last), Some(_)) if !(is_elsewhere && is_beyond(FAR)) => {
                 self.points[self.count - 1] = PathPoint { time: last.time, ..new };
             }
-            _ => self.add(new),
+            (_, Some(_)) => self.add(new),
+            (_, None) if contact.located && is_beyond(FAR.max(SURELY * place.std)) => self.add(new),
+            (_, None) => {}
         }
     }
 
@@ -62,8 +63,10 @@ impl Path {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Matrix3;
+
     use super::*;
-    use crate::isolation::ContactPlace;
+    use crate::isolation::{ContactPlace, ContactPosterior};
     use crate::robot::LinkIndex;
 
     fn at(x: f64) -> Contact {
@@ -82,12 +85,31 @@ mod tests {
         for (tick, x) in [0.1, 0.102, 0.103, 0.12, 0.125].into_iter().enumerate() {
             path.follow(&at(x), false, tick as f64);
         }
-        assert_eq!(places(&path), [0.103, 0.125]);
-        assert_eq!(path.points()[1].time, 3.0);
         // One that is not located, or nowhere, is no other.
         path.follow(&Contact { located: false, ..at(0.4) }, false, 6.0);
         path.follow(&Contact::unlocated(LinkIndex::new(2)), false, 7.0);
-        assert_eq!(places(&path), [0.103, 0.4]);
+        assert_eq!(places(&path), [0.1, 0.12]);
+        assert_eq!(path.points()[1].time, 3.0);
+    }
+
+    #[test]
+    fn a_posterior_says_itself_whether_the_place_is_another() {
+        let mut path = Path::new(&at(0.0));
+        let posterior = ContactPosterior {
+            probability: 1.0,
+            covariance: Matrix3::zeros(),
+            region_radius: 0.01,
+            modes: 0..0,
+            link_probabilities: 0..0,
+        };
+        let told = |x: f64| Contact { posterior: Some(posterior.clone()), ..at(x) };
+        for (tick, x) in [0.1, 0.14, 0.16].into_iter().enumerate() {
+            path.follow(&told(x), false, tick as f64);
+        }
+        assert_eq!((places(&path), path.points()[0].time), (vec![0.16], 0.0));
+        path.follow(&told(0.2), true, 4.0);
+        path.follow(&told(0.203), true, 5.0);
+        assert_eq!((places(&path), path.points()[1].time), (vec![0.16, 0.203], 4.0));
     }
 
     #[test]

@@ -16,6 +16,8 @@ const INTERVAL: f64 = 0.025;
 const INTERVAL_SHARE: f64 = 0.25;
 /// A torque that is less than this share of the strongest one of the contact, in standard deviations, tells little.
 const STRONG: f64 = 0.6;
+/// One that is weak for longer is not that of a contact that ends (s): it may have moved to where it causes less torque.
+const LASTING: f64 = 0.25;
 /// One that is so many times as large tells more at once.
 const GROWN: f64 = 1.3;
 /// A torque that is left out counts with so many times its standard deviation.
@@ -111,13 +113,15 @@ impl ContactTracker {
         self.strength = strength;
         let grown = strength > GROWN * self.strongest;
         let due = evidence.time - self.measured >= INTERVAL || grown;
-        if !first && (!self.surface.is_done() || !due || strength < STRONG * self.strongest) {
+        let is_weak = strength < STRONG * self.strongest;
+        let ends = is_weak && evidence.time - self.measured < LASTING;
+        if !first && (!self.surface.is_done() || !due || ends) {
             return;
         }
         if first || self.strongest < STRONG * strength {
             self.surface.begin();
         }
-        self.strongest = if first { strength } else { self.strongest.max(strength) };
+        self.strongest = if first || is_weak { strength } else { self.strongest.max(strength) };
         self.measured = evidence.time;
         let keep = first || grown || evidence.time - self.kept >= INTERVAL_SHARE * age;
         if keep {
