@@ -1565,6 +1565,20 @@ class Contact:
     @property
     def peak_force(self) -> float:
         """Greatest force so far [N]; NaN where contacts are not followed."""
+    @property
+    def path_local(self) -> NDArray[np.float64]:
+        """Where the contact has been, oldest first, `(n, 3)`, each point in the frame of its link in `path_links` [m]; read-only.
+
+        A point is added where the torques show that the contact has moved to another place on the robot; until then, the last
+        point becomes more exact. At most 32: of a longer path, every second point is left out. Empty where contacts are not
+        followed, and where neither a posterior nor a located point has been found yet.
+        """
+    @property
+    def path_times(self) -> NDArray[np.float64]:
+        """From when on the contact has been at each point of `path_local`, `(n,)`, as `ContactReport.time` [s]; read-only."""
+    @property
+    def path_links(self) -> tuple[str, ...]:
+        """Names of the links of the points of `path_local`."""
 
 @final
 class Candidate:

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use contactsense::isolation::{Candidate, Contact, Isolation, LinkProbability};
+use contactsense::isolation::{Candidate, Contact, Isolation, LinkProbability, PathPoint};
 use contactsense::particle::Mode;
 use contactsense::sensor::JOINT_TORQUES;
 use numpy::{PyArray1, PyArray2};
@@ -13,7 +13,7 @@ use crate::estimate::{matrix, modes};
 use crate::names::Names;
 use crate::once::Once;
 use crate::pickle::{plain_dict, reduced, Reduced};
-use crate::returned::{numbers, vector};
+use crate::returned::{from_rows, numbers, read_only, vector};
 
 type Array<'py> = Bound<'py, PyArray1<f64>>;
 
@@ -111,6 +111,8 @@ pub struct PyContact {
     vectors: Vectors,
     covariance: Once<PyArray2<f64>>,
     determined_covariance: Once<PyArray2<f64>>,
+    path_local: Once<PyArray2<f64>>,
+    path_times: Once<PyArray1<f64>>,
     candidates: Once<PyTuple>,
     modes: Once<PyTuple>,
 }
@@ -121,6 +123,7 @@ pub struct Found {
     candidates: Vec<Candidate>,
     modes: Vec<Mode>,
     link_probabilities: Vec<LinkProbability>,
+    path: Vec<PathPoint>,
 }
 
 #[derive(Default)]
@@ -142,6 +145,8 @@ impl PyContact {
             vectors: Vectors::default(),
             covariance: Once::default(),
             determined_covariance: Once::default(),
+            path_local: Once::default(),
+            path_times: Once::default(),
             candidates: Once::default(),
             modes: Once::default(),
         }
@@ -306,19 +311,44 @@ impl PyContact {
     /// Which contact it is over time: the same number in all ticks of one contact; None where contacts are not followed.
     #[getter]
     fn id(&self) -> Option<u64> {
-        self.contact.track.map(|track| track.id)
+        self.contact.track.as_ref().map(|track| track.id)
     }
 
     /// Time of the contact's first tick, as `ContactReport.time` [s]; NaN where contacts are not followed.
     #[getter]
     fn since(&self) -> f64 {
-        self.contact.track.map_or(f64::NAN, |track| track.since)
+        self.contact.track.as_ref().map_or(f64::NAN, |track| track.since)
     }
 
     /// Greatest force so far [N]; NaN where contacts are not followed.
     #[getter]
     fn peak_force(&self) -> f64 {
-        self.contact.track.map_or(f64::NAN, |track| track.peak_force)
+        self.contact.track.as_ref().map_or(f64::NAN, |track| track.peak_force)
+    }
+
+    /// Where the contact has been, oldest first, `(n, 3)`, each point in the frame of its link in `path_links` [m]; read-only.
+    ///
+    /// A point is added where the torques show that the contact has moved to another place on the robot; until then, the last
+    /// point becomes more exact. At most 32: of a longer path, every second point is left out. Empty where contacts are not
+    /// followed, and where neither a posterior nor a located point has been found yet.
+    #[getter]
+    fn path_local<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let rows = self.found.path.iter().map(|point| point.point_local.into());
+        self.path_local.get(py, || Ok(read_only(from_rows(py, rows)?)))
+    }
+
+    /// From when on the contact has been at each point of `path_local`, `(n,)`, as `ContactReport.time` [s]; read-only.
+    #[getter]
+    fn path_times<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
+        let times: Vec<f64> = self.found.path.iter().map(|point| point.time).collect();
+        self.path_times.get(py, || Ok(numbers(py, &times)))
+    }
+
+    /// Names of the links of the points of `path_local`.
+    #[getter]
+    fn path_links<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let links: Vec<_> = self.found.path.iter().map(|point| point.link).collect();
+        self.names.of_links(py, &links)
     }
 
     /// All attributes by name.
@@ -330,7 +360,7 @@ impl PyContact {
         let determined = ["determined_wrench", "determined_wrench_covariance"];
         let others = ["located", "point_std", "verified", "candidates"];
         let posterior = ["probability", "link_probabilities", "covariance", "region_radius", "modes"];
-        let track = ["id", "since", "peak_force"];
+        let track = ["id", "since", "peak_force", "path_local", "path_times", "path_links"];
         plain_dict(
             slf.as_any(),
             &[&vectors[..], &determined[..], &others[..], &posterior[..], &track[..]].concat(),
@@ -369,6 +399,9 @@ pub fn contacts<'py>(
             found.modes = isolation.modes.get(posterior.modes.clone()).unwrap_or_default().to_vec();
             let links = isolation.link_probabilities.get(posterior.link_probabilities.clone());
             found.link_probabilities = links.unwrap_or_default().to_vec();
+        }
+        if let Some(track) = &contact.track {
+            found.path = isolation.paths.get(track.path.clone()).unwrap_or_default().to_vec();
         }
         PyContact::new(names.clone(), contact.clone(), found)
     };

@@ -40,6 +40,6 @@ pub use isolator::ContactIsolator;
 pub(crate) use options::samples;
 pub use options::IsolatorOptions;
 pub(crate) use options::SAMPLES;
-pub use posterior::{ContactPosterior, LinkProbability, Track};
+pub use posterior::{ContactPosterior, LinkProbability, PathPoint, Track};
 pub use result::{Candidate, Contact, ContactPlace, Isolation};
 pub(crate) use surface_contact::{SurfaceContact, TorqueNow};

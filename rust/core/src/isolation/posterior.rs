@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::robot::LinkIndex;
 
@@ -26,7 +26,7 @@ use crate::robot::LinkIndex;
 /// let contact = &isolation.contacts[0];
 /// let posterior = contact.posterior.as_ref().expect("one contact without sensors");
 /// assert!(posterior.probability <= 1.0 + 1e-9 && posterior.region_radius > 0.0);
-/// assert_eq!(contact.track.expect("it is followed").id, 0);
+/// assert_eq!(contact.track.as_ref().expect("it is followed").id, 0);
 /// // All links together.
 /// let sum: f64 = isolation.link_probabilities[posterior.link_probabilities.clone()].iter().map(|it| it.probability).sum();
 /// assert!((sum - 1.0).abs() < 1e-9);
@@ -72,10 +72,10 @@ pub struct LinkProbability {
 /// ```
 /// use contactsense::isolation::Track;
 ///
-/// let track = Track { id: 3, since: 1.25, peak_force: 18.0 };
-/// assert!(track.peak_force > 10.0);
+/// let track = Track { id: 3, since: 1.25, peak_force: 18.0, path: 0..2 };
+/// assert!(track.peak_force > 10.0 && track.path.len() == 2);
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Track {
     /// The same for one contact in all ticks; the first is 0.
@@ -84,4 +84,28 @@ pub struct Track {
     pub since: f64,
     /// Greatest force so far (N).
     pub peak_force: f64,
+    /// This contact's part of [`Isolation::paths`](super::Isolation::paths), oldest first.
+    pub path: Range<usize>,
+}
+
+/// A place of a contact that moves over the robot's surface.
+///
+/// ```
+/// use contactsense::isolation::PathPoint;
+/// use contactsense::robot::Robot;
+///
+/// let robot = Robot::example_arm();
+/// let point = PathPoint { time: 1.5, link: robot.link("link_7")?, point_local: [0.05, 0.0, 0.1].into() };
+/// assert_eq!(robot[point.link].name, "link_7");
+/// # Ok::<(), contactsense::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PathPoint {
+    /// From when on the contact has been here (s).
+    pub time: f64,
+    /// The link.
+    pub link: LinkIndex,
+    /// In the link's frame (m).
+    pub point_local: Vector3<f64>,
 }

@@ -5,12 +5,13 @@ use std::ops::Range;
 use nalgebra::{Vector3, Vector6};
 
 use super::determined_wrench::{DeterminedWrench, WrenchPosterior};
-use super::posterior::{ContactPosterior, LinkProbability, Track};
+use super::posterior::{ContactPosterior, LinkProbability, PathPoint, Track};
 use super::surface_contact::TorqueNow;
 use crate::posterior::{Mode, MOST_MODES};
 use crate::robot::LinkIndex;
 use crate::sensor::{SensorIndex, SensorTree};
 use crate::spatial::vector::split;
+use crate::tracking::MOST_POINTS;
 
 /// All hits of one instant that are kept.
 pub(super) const CANDIDATES: usize = 512;
@@ -182,6 +183,8 @@ pub struct Isolation {
     pub modes: Vec<Mode>,
     /// Probabilities of links, of all contacts' posteriors.
     pub link_probabilities: Vec<LinkProbability>,
+    /// Paths of all contacts that are followed.
+    pub paths: Vec<PathPoint>,
     /// How many components of the wrenches the torques leave open (Vorndamme 2017, eq. 31).
     pub rank_deficit: usize,
     /// Norm of the external torque that the contacts do not explain.
@@ -202,6 +205,7 @@ impl Isolation {
             link_candidates: Vec::with_capacity(links + contacts),
             modes: Vec::with_capacity(MOST_MODES),
             link_probabilities: Vec::with_capacity(links),
+            paths: Vec::with_capacity(contacts * MOST_POINTS),
             ..Self::default()
         }
     }
@@ -226,6 +230,7 @@ impl Isolation {
         self.link_candidates.clear();
         self.modes.clear();
         self.link_probabilities.clear();
+        self.paths.clear();
         self.rank_deficit = 0;
         self.residual = 0.0;
         self.truncated = false;

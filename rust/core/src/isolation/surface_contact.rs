@@ -114,11 +114,11 @@ impl SurfaceContact {
         self.place = None;
     }
 
-    /// Takes in a torque of the contact.
-    pub fn measure(&mut self, now: &TorqueNow<'_>) {
+    /// Takes in a torque of the contact; one that is not kept counts until the next.
+    pub fn measure(&mut self, now: &TorqueNow<'_>, keep: bool) {
         let Self { posterior, noise, in_contact, .. } = self;
         noise.set_deviations_beside(now.deviation, now.torque, in_contact);
-        posterior.measure(now.kinematics, now.torque, in_contact);
+        posterior.measure(now.kinematics, now.torque, in_contact, keep);
     }
 
     /// Whether there is no work left.
@@ -138,6 +138,11 @@ impl SurfaceContact {
         self.modes.clear();
         self.modes.extend(found.estimate.modes.iter().map(local));
         true
+    }
+
+    /// Whether the last posterior is of another place than the one before.
+    pub fn is_elsewhere(&self) -> bool {
+        self.posterior.is_elsewhere()
     }
 
     /// The force at a place on a link, in its frame (N); none where the torques do not determine it.
@@ -185,7 +190,7 @@ impl SurfaceContact {
             return;
         }
         self.forget();
-        self.measure(now);
+        self.measure(now, true);
         while !self.is_done() {
             self.step();
         }

@@ -82,7 +82,7 @@ impl ContactMap {
         self.kinematics.set_configuration(&self.robot, q);
         self.noise.set_deviations(tau_ext, &mut self.deviation);
         self.posterior.forget();
-        self.posterior.measure(&self.kinematics, tau_ext, &self.deviation);
+        self.posterior.measure(&self.kinematics, tau_ext, &self.deviation, true);
         while !self.posterior.step() {}
         Ok(self.summary.read(&self.posterior))
     }

@@ -5,6 +5,7 @@ mod estimate;
 mod identifiability;
 mod leaves;
 mod measurement;
+mod measurements;
 mod options;
 mod summary;
 mod surface_posterior;

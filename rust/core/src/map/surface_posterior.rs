@@ -2,14 +2,17 @@
 
 mod lines;
 mod refinement;
+mod same_place;
 
 use std::sync::Arc;
 
 use lines::{Line, HITS};
 use refinement::PLACES;
+use same_place::SamePlace;
 
 use super::leaves::Leaf;
 use super::measurement::Measurement;
+use super::measurements::{Logs, Measurements};
 use super::options::MapOptions;
 use super::surface_samples::SurfaceSamples;
 use crate::error::Result;
@@ -17,10 +20,8 @@ use crate::posterior::resampling::normalise;
 use crate::posterior::Clusters;
 use crate::robot::{Kinematics, Robot};
 use crate::surface::RayHit;
-use crate::torque::{ForcePrior, PlaceBlock, PushLikelihood, SensorMount, LANES};
+use crate::torque::{ForcePrior, PushLikelihood, SensorMount, LANES};
 
-/// More measurements of one contact than this are not kept.
-const MOST_MEASUREMENTS: usize = 4;
 /// Likelihoods of blocks that a step works out at most, about.
 const STEP: usize = 96;
 /// Pieces that are divided at a level at most, and how many levels there are: work is bounded.
@@ -71,18 +72,21 @@ pub(crate) struct SurfacePosterior {
     robot: Arc<Robot>,
     pub(super) prior: ForcePrior,
     pub(super) samples: SurfaceSamples,
-    /// Newest last.
-    measurements: Vec<Measurement>,
-    count: usize,
-    /// What the measurements say of each block of samples.
+    measurements: Measurements,
+    /// What the measurements say of each block of samples: the newest, then all.
     pub(super) found: Vec<PushLikelihood>,
-    /// Links of the samples, those first whose joints feel most, and that half of the squared norm over its noise: no contact there
-    /// has a log-likelihood above it.
-    likely: Vec<(f64, usize)>,
+    /// What the older ones say.
+    older: Vec<Logs>,
+    same_place: SamePlace,
+    /// Whether the older measurements were of another place.
+    is_elsewhere: bool,
+    /// Links of the samples, those first whose joints feel most, and that half of the squared norm over its noise, of the newest
+    /// measurement and of the older ones: no contact there has a log-likelihood above it.
+    likely: Vec<([f64; 2], usize)>,
     /// Those of them where a contact is possible.
     possible: Vec<usize>,
-    /// Logarithm of the greatest likelihood of the samples so far.
-    greatest: f64,
+    /// Logarithms of the greatest likelihoods of the samples so far: of the newest, and of the older ones.
+    greatest: [f64; 2],
     pub(super) leaves: Vec<Leaf>,
     log_weights: Vec<f64>,
     pub(super) weights: Vec<f64>,
@@ -111,15 +115,18 @@ impl SurfacePosterior {
         sensors: &[SensorMount],
     ) -> Result<Self> {
         let samples = SurfaceSamples::new(&robot, wanted, options.samples)?;
+        let blocks = samples.links.iter().map(|link| link.blocks.len()).sum();
         let most = 2 * samples.count + MOST_LEVELS * 2 * MOST_DIVIDED * LANES;
         Ok(SurfacePosterior {
             prior: options.prior(),
-            measurements: vec![Measurement::new(&robot, wanted.to_vec(), sensors); MOST_MEASUREMENTS],
-            count: 0,
-            found: vec![PushLikelihood::none(0.0); samples.links.iter().map(|link| link.blocks.len()).sum()],
+            measurements: Measurements::new(&robot, wanted, sensors),
+            found: vec![PushLikelihood::none(0.0); blocks],
+            older: vec![Logs::default(); blocks],
+            same_place: SamePlace::new(),
+            is_elsewhere: false,
             likely: Vec::with_capacity(samples.links.len()),
             possible: Vec::with_capacity(samples.links.len()),
-            greatest: f64::NEG_INFINITY,
+            greatest: [f64::NEG_INFINITY; 2],
             leaves: Vec::with_capacity(most),
             log_weights: Vec::with_capacity(most),
             weights: Vec::with_capacity(most),
@@ -145,25 +152,25 @@ impl SurfacePosterior {
 
     /// Forgets all measurements: another contact.
     pub fn forget(&mut self) {
-        self.count = 0;
+        self.measurements.forget();
         self.stage = Stage::Done;
     }
 
-    /// Takes in a measurement of the contact, in place of the oldest one where there are as many as are kept. Work that is
-    /// not done is given up.
-    pub fn measure(&mut self, kinematics: &Kinematics, torque: &[f64], deviation: &[f64]) {
-        if self.count == MOST_MEASUREMENTS {
-            self.measurements.rotate_left(1);
-            self.count -= 1;
-        }
-        self.measurements[self.count].set(&self.robot, kinematics, torque, deviation);
-        self.count += 1;
+    /// Takes in a measurement of the contact, in place of the last one if that is not kept, and of the oldest one where there are as
+    /// many as are kept. Work that is not done is given up.
+    pub fn measure(&mut self, kinematics: &Kinematics, torque: &[f64], deviation: &[f64], keep: bool) {
+        self.measurements.take_in(&self.robot, kinematics, torque, deviation, keep);
         self.start();
     }
 
     /// The newest measurement, weighed by its stated noise once the work is done.
     pub fn newest(&self) -> &Measurement {
-        &self.measurements[self.count.saturating_sub(1)]
+        self.measurements.newest()
+    }
+
+    /// Whether the newest measurement is of another place than the older ones, which have been forgotten.
+    pub fn is_elsewhere(&self) -> bool {
+        self.is_elsewhere
     }
 
     /// Whether there is work left.
@@ -173,7 +180,7 @@ impl SurfacePosterior {
 
     /// Logarithm of how many times as likely the torques are with a contact as without.
     pub fn log_evidence(&self) -> f64 {
-        self.log_pieces - self.samples.area.ln() - self.without_contact()
+        self.log_pieces - self.samples.area.ln() - self.measurements.without_contact()
     }
 
     fn start(&mut self) {
@@ -182,16 +189,20 @@ impl SurfacePosterior {
         let force = self.rough_force();
         self.possible.clear();
         self.possible.extend(self.samples.links.iter().map(|link| link.link));
-        self.blur(CURVED * self.edge * force);
-        let Self { likely, samples, measurements, count, .. } = self;
-        let share = 0.5 / *count as f64;
+        let Self { likely, samples, measurements, possible, .. } = self;
+        measurements.blur(CURVED * self.edge * force, possible);
+        let older = measurements.older();
         likely.clear();
         likely.extend(samples.links.iter().enumerate().map(|(k, link)| {
-            let felt = |measurement: &Measurement| measurement.felt(link.link);
-            (share * measurements[..*count].iter().map(felt).sum::<f64>(), k)
+            let felt = |measurement: &Measurement| 0.5 * measurement.felt(link.link);
+            let mean = older.iter().map(felt).sum::<f64>() / older.len() as f64;
+            let of_older = if older.is_empty() { f64::NEG_INFINITY } else { mean };
+            ([felt(measurements.newest()), of_older], k)
         }));
-        likely.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
-        self.greatest = f64::NEG_INFINITY;
+        likely.sort_unstable_by(|a, b| b.0[0].total_cmp(&a.0[0]).then(b.1.cmp(&a.1)));
+        self.greatest = [f64::NEG_INFINITY; 2];
+        self.same_place = SamePlace::new();
+        self.is_elsewhere = false;
         self.stage = Stage::Samples { rank: 0, block: 0 };
     }
 
@@ -226,46 +237,17 @@ impl SurfacePosterior {
         best.1
     }
 
-    fn blur(&mut self, error: f64) {
-        let Self { measurements, count, possible, .. } = self;
-        measurements[..*count].iter_mut().for_each(|measurement| measurement.blur(error, possible));
-    }
-
-    /// What all measurements say of contacts on a block of pieces: the mean of the logarithms, since they are correlated and
-    /// together count as one (algorithm D4); the forces of the newest.
-    #[inline]
-    fn likelihood(&self, link: usize, block: &PlaceBlock) -> PushLikelihood {
-        let (newest, others) = (self.newest(), &self.measurements[..self.count.saturating_sub(1)]);
-        let mut mean = newest.likelihood(&self.prior, link, block);
-        for measurement in others {
-            let found = measurement.likelihood(&self.prior, link, block);
-            for (sum, found) in mean.log.iter_mut().zip(found.log) {
-                sum.iter_mut().zip(found).for_each(|(sum, log)| *sum += log);
-            }
-        }
-        if !others.is_empty() {
-            let share = 1.0 / self.count as f64;
-            mean.log.iter_mut().flatten().for_each(|log| *log *= share);
-        }
-        mean
-    }
-
-    /// Mean log-likelihood without contact, at the present weights.
-    fn without_contact(&self) -> f64 {
-        let known = &self.measurements[..self.count];
-        known.iter().map(Measurement::without_contact).sum::<f64>() / self.count.max(1) as f64
-    }
-
     fn weigh_samples(&mut self, mut rank: usize, mut block: usize) -> Stage {
         let mut work = 0;
-        while let Some(&(bound, link)) = self.likely.get(rank) {
+        while let Some(&(bounds, link)) = self.likely.get(rank) {
             if work >= STEP {
                 return Stage::Samples { rank, block };
             }
             let samples = &self.samples.links[link];
             let own = samples.first..samples.first + samples.blocks.len();
-            if block == 0 && bound < self.greatest - IMPOSSIBLE {
-                self.found[own].fill(PushLikelihood::none(bound));
+            if block == 0 && (0..2).all(|k| bounds[k] < self.greatest[k] - IMPOSSIBLE) {
+                self.found[own.clone()].fill(PushLikelihood::none(bounds[0]));
+                self.older[own].fill([[bounds[1]; LANES]; 2]);
                 rank += 1;
                 continue;
             }
@@ -273,23 +255,50 @@ impl SurfacePosterior {
                 (rank, block) = (rank + 1, 0);
                 continue;
             };
-            let found = self.likelihood(samples.link, places);
-            self.found[own.start + block] = found;
-            self.greatest = found.log.iter().flatten().copied().fold(self.greatest, f64::max);
-            (block, work) = (block + 1, work + self.count);
+            let Self { measurements, prior, .. } = self;
+            let found = measurements.newest().likelihood(prior, samples.link, places);
+            let older = measurements.older_likelihood(prior, samples.link, places);
+            for (greatest, logs) in self.greatest.iter_mut().zip([&found.log, &older]) {
+                *greatest = logs.iter().flatten().copied().fold(*greatest, f64::max);
+            }
+            if !measurements.older().is_empty() {
+                self.same_place.add(&found.log, &older, &samples.areas[block * LANES..]);
+            }
+            (self.found[own.start + block], self.older[own.start + block]) = (found, older);
+            (block, work) = (block + 1, work + self.measurements.all().len());
         }
+        self.fuse();
         Stage::Collect
+    }
+
+    /// Makes what all measurements say of the samples of what the newest and the older ones say; the older ones are forgotten if
+    /// they were of another place.
+    fn fuse(&mut self) {
+        if self.measurements.older().is_empty() {
+            return;
+        }
+        if !self.same_place.is_likely(self.samples.area) {
+            self.is_elsewhere = true;
+            return self.measurements.forget_older();
+        }
+        for (found, older) in self.found.iter_mut().zip(&self.older) {
+            self.measurements.mix(&mut found.log, older);
+        }
     }
 
     /// The samples that have a share of the posterior are its first pieces, and the best one of each link and side: a sample is
     /// coarse, and which link it is may only show on smaller pieces.
     fn take_samples(&mut self) -> Stage {
-        let Self { likely, samples, possible, greatest, .. } = self;
-        let others = likely.iter().filter(|(bound, _)| *bound >= *greatest - IMPOSSIBLE);
+        let logs = self.found.iter().flat_map(|block| block.log.as_flattened());
+        let greatest = logs.copied().fold(f64::NEG_INFINITY, f64::max);
+        let Self { likely, samples, possible, measurements, .. } = self;
+        let is_possible =
+            |bounds: &[f64; 2]| measurements.together(bounds[0], bounds[1]) >= greatest - IMPOSSIBLE;
+        likely.retain(|(bounds, _)| is_possible(bounds));
         possible.clear();
-        possible.extend(others.map(|(_, link)| samples.links[*link].link));
+        possible.extend(likely.iter().map(|(_, link)| samples.links[*link].link));
         self.leaves.clear();
-        let without = self.without_contact();
+        let without = self.measurements.without_contact();
         for samples in &self.samples.links {
             let found = &self.found[samples.first..samples.first + samples.blocks.len()];
             let count = samples.places.len();
@@ -297,10 +306,10 @@ impl SurfacePosterior {
                 let logs = || found.iter().flat_map(|block| block.log[side]).take(count);
                 let forces = found.iter().flat_map(|block| block.force[side]);
                 let best = logs().fold(f64::NEG_INFINITY, f64::max);
-                if best < self.greatest - IMPOSSIBLE {
+                if best < greatest - IMPOSSIBLE {
                     continue;
                 }
-                let floor = best.min(self.greatest + KEPT.ln());
+                let floor = best.min(greatest + KEPT.ln());
                 let places = samples.places.iter().zip(&samples.areas);
                 for ((log, force), (&place, &area)) in logs().zip(forces).zip(places) {
                     if log >= floor {
@@ -343,7 +352,7 @@ impl SurfacePosterior {
         }
         self.level += 1;
         self.edge *= 0.5;
-        self.blur(CURVED * self.edge * force);
+        self.measurements.blur(CURVED * self.edge * force, &self.possible);
         self.choose(best);
         Stage::Pieces { next: 0 }
     }
@@ -364,7 +373,7 @@ impl SurfacePosterior {
 
     /// Weights and noise are final; how far a contact is from the middle of its piece is not known yet.
     fn finish(&mut self) -> Stage {
-        self.blur(0.0);
+        self.measurements.blur(0.0, &self.possible);
         Stage::Spreads { next: 0 }
     }
 
@@ -385,7 +394,7 @@ impl SurfacePosterior {
     }
 
     fn find_clusters(&mut self) -> Stage {
-        let frames = self.measurements[self.count - 1].frames();
+        let frames = self.measurements.newest().frames();
         self.clusters.find(&self.robot, frames, &self.leaves, &self.weights);
         Stage::Done
     }

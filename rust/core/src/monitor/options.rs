@@ -143,7 +143,7 @@ impl MonitorOptions {
         let options = MapOptions { samples: self.samples, ..MapOptions::default() };
         let locate_within = self.isolation.locate_within;
         let surface = SurfaceContact::new(Arc::clone(robot), &options, sensed, noise.clone(), locate_within)?;
-        Ok(surface.map(ContactTracker::new))
+        Ok(surface.map(|surface| ContactTracker::new(Arc::clone(robot), surface)))
     }
 
     /// With the noise and the offsets of sensors of the calibration, and thresholds for its rate of false alarms, where none

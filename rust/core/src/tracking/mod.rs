@@ -2,7 +2,9 @@
 
 mod evidence;
 mod identities;
+mod path;
 mod tracker;
 
 pub(crate) use evidence::TickEvidence;
+pub(crate) use path::MOST_POINTS;
 pub(crate) use tracker::ContactTracker;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use super::{Leaf, Stage, SurfacePosterior, IMPOSSIBLE, STEP};
+use super::{Leaf, Stage, SurfacePosterior, STEP};
 use crate::surface::{RayHit, Surface, SurfacePoint};
 use crate::torque::{BestForce, PlaceBlock, LANES};
 
@@ -34,14 +34,11 @@ impl SurfacePosterior {
         }
         let mut work = 0;
         if let Some(line) = self.line {
-            while let Some(&(bound, link)) = self.likely.get(next) {
+            while let Some(&(_, link)) = self.likely.get(next) {
                 if work >= STEP {
                     return Stage::Line { next };
                 }
-                if bound < self.greatest - IMPOSSIBLE {
-                    break;
-                }
-                work += CAST + LOOK * self.count * self.follow_on(link, &line);
+                work += CAST + LOOK * self.measurements.all().len() * self.follow_on(link, &line);
                 next += 1;
             }
         }
@@ -104,9 +101,10 @@ impl SurfacePosterior {
         });
         let Some(area) = area else { return };
         let place = SurfacePoint { point: hit.point, normal: hit.normal, triangle: hit.triangle };
-        let found = self.likelihood(link, &PlaceBlock::new(&[(place.point, place.normal, area); LANES]));
+        let block = PlaceBlock::new(&[(place.point, place.normal, area); LANES]);
+        let found = self.measurements.likelihood(&self.prior, link, &block);
         let (log, force) = (found.log[usize::from(pulls)][0], found.force[usize::from(pulls)][0]);
-        let log_weight = log + self.without_contact() + area.ln();
+        let log_weight = log + self.measurements.without_contact() + area.ln();
         let piece = Leaf { link, place, area, pulls, log_weight, force, spread: Leaf::width(area) };
         match known {
             Some(known) if log_weight > self.leaves[known].log_weight => self.leaves[known] = piece,

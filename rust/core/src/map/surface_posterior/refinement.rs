@@ -57,13 +57,13 @@ impl SurfacePosterior {
 
     /// Divides pieces into four each, on the true surface.
     pub(super) fn divide(&mut self, mut next: usize) -> Stage {
-        let without = self.without_contact();
+        let without = self.measurements.without_contact();
         let mut work = 0;
         while let Some(&index) = self.order.get(next) {
             if work >= STEP {
                 return Stage::Pieces { next };
             }
-            (next, work) = (next + 1, work + self.count + PROJECTION);
+            (next, work) = (next + 1, work + self.measurements.all().len() + PROJECTION);
             let mut leaf = self.leaves[index as usize];
             let best = self.sides[2 * leaf.link + usize::from(leaf.pulls)].contains(&Some(index as usize));
             if best {
@@ -73,7 +73,7 @@ impl SurfacePosterior {
             let Some(surface) = self.robot.links()[leaf.link].surface.as_ref() else { continue };
             let area = 0.25 * leaf.area;
             let (places, block) = projected(surface, leaf.quarters(), area, leaf.place.triangle);
-            let found = self.likelihood(leaf.link, &block);
+            let found = self.measurements.likelihood(&self.prior, leaf.link, &block);
             let side = usize::from(leaf.pulls);
             let parts = places.into_iter().zip(found.log[side]).zip(found.force[side]);
             for (k, ((place, log), force)) in parts.enumerate() {
@@ -99,7 +99,8 @@ impl SurfacePosterior {
             let Some(step) = self.step_from(leaf, &place, reach) else { break };
             let tried = SHARES.map(|share| place.point + step * share);
             let (places, block) = projected(surface, tried, leaf.area, place.triangle);
-            let logs = self.likelihood(leaf.link, &block).log[usize::from(leaf.pulls)];
+            let logs =
+                self.measurements.likelihood(&self.prior, leaf.link, &block).log[usize::from(leaf.pulls)];
             // The last share is none.
             let best = (0..LANES).fold(LANES - 1, |best, k| if logs[k] > logs[best] { k } else { best });
             if best == LANES - 1 || surface.hides(&places[best].point, places[best].triangle) {
@@ -123,7 +124,7 @@ impl SurfacePosterior {
 
     fn normal_equations(&self, leaf: &Leaf, place: &SurfacePoint) -> PlaceStep {
         let mut step = PlaceStep::at(&place.point, &place.normal);
-        let known = &self.measurements[..self.count];
+        let known = self.measurements.all();
         for measurement in known {
             let (frames, target) = (measurement.frames(), measurement.target());
             let (frame, target) = (&frames.links[leaf.link], target.on(leaf.link));
