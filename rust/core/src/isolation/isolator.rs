@@ -7,18 +7,15 @@ use nalgebra::Vector6;
 use super::body_set::BodySet;
 use super::contact_evidence::{ContactEvidence, WithoutWanted};
 use super::determined_wrench::WrenchPosterior;
-use super::found::Scene;
 use super::line::LineCast;
 use super::options::IsolatorOptions;
 use super::region::{Region, Regions};
 use super::result::{Candidate, Isolation, CANDIDATES};
-use super::rows::{Root, TorqueRows};
+use super::rows::TorqueRows;
 use super::sensed::check_wrenches;
 use super::several::SeveralContacts;
 use super::surface_contact::SurfaceContact;
 use super::tips::TipSearch;
-use super::wrench::WrenchEstimate;
-use super::wrench_rows::WrenchRows;
 use crate::detection::{check_wrench_threshold, is_over};
 use crate::error::{Error, Result};
 use crate::observer::WrenchObserver;
@@ -32,9 +29,6 @@ pub(super) const CONTRADICTION: f64 = 1.0;
 /// A force is determined if it exceeds so many standard deviations of it. The direction of a weaker one is that of the
 /// errors of the torques.
 pub(super) const SIGNIFICANCE: f64 = 3.0;
-/// Radius that holds 90 % of a normal distribution, in standard deviations of the distance: at most this, which is for a
-/// distribution along a line (for a circular one it is 1.52).
-const RADIUS_90: f64 = 1.645;
 /// A torque or wrench that is a difference of measured ones is none if it is less than this share of them: five
 /// standard deviations of sensors that err by a hundredth.
 pub(super) const LEFT_OVER: f64 = 0.05;
@@ -72,7 +66,7 @@ pub struct ContactIsolator {
     pub(super) wrench_threshold: Vec<Vector6<f64>>,
     pub(super) max_contacts: usize,
     pub(super) pushing: bool,
-    locate_within: f64,
+    pub(super) locate_within: f64,
     kinematics: Kinematics,
     pub(super) regions: Regions,
     /// By velocity variable: its torque says nothing of contacts.
@@ -317,140 +311,5 @@ impl ContactIsolator {
     /// Names of the sensors, in their order.
     pub fn sensor_names(&self) -> &[String] {
         self.regions.tree.names()
-    }
-
-    /// The contacts that no sensor sees: one force if that explains the torques but for rounding; else several; one
-    /// again if it explains them roughly; else the links are named.
-    fn isolate_from_torques(&mut self, kinematics: &Kinematics) {
-        if self.find_tips(0.0) == 0 {
-            return;
-        }
-        let single = |isolator: &Self| match isolator.tips.tips() {
-            [tip] => Some(*tip),
-            _ => None,
-        };
-        if let Some(tip) = single(self).filter(|tip| self.is_single(kinematics, *tip)) {
-            return self.isolate_single(kinematics, tip);
-        }
-        let exact = self.solve_exactly(kinematics, None);
-        if exact && self.several.verified {
-            self.identify(kinematics, None);
-            return self.report_several(kinematics);
-        }
-        // Two contacts without proof: more than one force only if a free base tells the sum of all.
-        let exact = exact && self.robot.floating_base();
-        // Beside strong contacts that sensors see, a weak torque may be their error.
-        if self.find_tips(LEFT_OVER) == 0 {
-            return;
-        }
-        if let Some(tip) = self.lone_tip(kinematics) {
-            return self.isolate_single(kinematics, tip);
-        }
-        self.set_rows(kinematics, None, true);
-        match single(self) {
-            Some(tip) if self.estimate(kinematics, tip).rank < 6 || self.roughly(tip) => {
-                if !self.isolate_two(kinematics, tip) {
-                    self.isolate_single(kinematics, tip);
-                }
-            }
-            tip => {
-                if exact || self.solve_roughly(kinematics, None, false) {
-                    self.identify(kinematics, None);
-                    self.report_several(kinematics);
-                } else if tip.is_none() && self.isolate_partly(kinematics) {
-                } else if self.solve_roughly(kinematics, None, true) {
-                    self.identify(kinematics, None);
-                    self.report_several(kinematics);
-                } else if let Some(tip) = tip {
-                    self.isolate_single(kinematics, tip);
-                } else {
-                    self.name_links(kinematics);
-                }
-            }
-        }
-    }
-
-    /// The contacts that the joints behind all others determine; links are named for the rest. False if there are none.
-    fn isolate_partly(&mut self, kinematics: &Kinematics) -> bool {
-        if self.several.peeled == 0 {
-            return false;
-        }
-        self.set_rows(kinematics, None, true);
-        let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
-        self.several.peel_all(scene, &mut self.rows);
-        self.several.narrow(self.rows.widest_threshold(&self.limit));
-        self.report_found_alone(kinematics);
-        let Self { robot, tips, region, rows, limit, .. } = self;
-        tips.find(robot, |k| region.feels[k] && is_over(rows.torque[k], limit[k]));
-        self.name_links(kinematics);
-        true
-    }
-
-    /// The bodies at the ends of what the joints feel, and their number; `share` of what sensors have explained
-    /// already is no torque.
-    pub(super) fn find_tips(&mut self, share: f64) -> usize {
-        let Self { robot, tips, region, residual, limit, measured, .. } = self;
-        let over = |k: usize| is_over(residual[k], limit[k].max(share * measured[k]));
-        tips.find(robot, |k| region.feels[k] && over(k)).len()
-    }
-
-    /// Whether 90 % of the places are within the distance asked for.
-    pub(super) fn is_near_enough(&self, point_std: f64) -> bool {
-        RADIUS_90 * point_std <= self.locate_within
-    }
-
-    pub(super) fn set_rows(&mut self, kinematics: &Kinematics, root: Option<&Root>, widened: bool) {
-        let noise = widened.then_some(&self.noise);
-        self.rows.set(&self.robot, kinematics, &self.residual, &self.measured, &self.limit, noise);
-        self.rows.root = root.map(|root| if widened { *root } else { root.narrow() });
-    }
-
-    /// Contacts that explain the torques but for rounding.
-    fn solve_exactly(&mut self, kinematics: &Kinematics, root: Option<&Root>) -> bool {
-        self.set_rows(kinematics, root, true);
-        let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
-        let exact = self.several.solve_exactly(scene, &mut self.rows);
-        if exact {
-            self.several.narrow(self.rows.widest_threshold(&self.limit));
-        }
-        exact
-    }
-
-    /// Several forces that explain the torques within the thresholds, or within `widened` tolerances; tips are found.
-    fn solve_roughly(&mut self, kinematics: &Kinematics, root: Option<&Root>, widened: bool) -> bool {
-        self.set_rows(kinematics, root, widened);
-        let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
-        self.several.solve_roughly(scene, &self.rows, self.tips.tips(), widened)
-    }
-
-    /// Whether one force explains the torques within their tolerances.
-    fn roughly(&self, tip: usize) -> bool {
-        let mut rows = WrenchRows::new();
-        for joint in self.region.chain(&self.robot, tip) {
-            self.rows.push_joint(&self.robot, joint, &mut rows);
-        }
-        WrenchEstimate::from_rows(rows).misfit() <= CONTRADICTION
-    }
-
-    /// Several forces that explain a sensor's wrench and the torques behind it; where one force does, only if they fit
-    /// but for rounding.
-    pub(super) fn solve_several(&mut self, kinematics: &Kinematics, root: &Root, one_does: bool) -> bool {
-        let exact = self.solve_exactly(kinematics, Some(root));
-        if one_does && !(exact && self.several.verified) {
-            return false;
-        }
-        self.find_tips(LEFT_OVER);
-        let roughly = |isolator: &mut Self, widened| isolator.solve_roughly(kinematics, Some(root), widened);
-        let solved = exact || roughly(self, false) || roughly(self, true);
-        if solved {
-            self.identify(kinematics, Some(root));
-        }
-        solved
-    }
-
-    pub(super) fn identify(&mut self, kinematics: &Kinematics, root: Option<&Root>) {
-        self.set_rows(kinematics, root, true);
-        let scene = Scene { robot: &self.robot, kinematics, region: &self.region };
-        self.several.identify(scene, &self.rows);
     }
 }

@@ -7,6 +7,7 @@ mod contact_evidence;
 mod determined_wrench;
 mod force;
 mod found;
+mod from_torques;
 mod isolator;
 mod likely;
 mod line;

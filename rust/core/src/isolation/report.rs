@@ -14,6 +14,9 @@ use crate::spatial::vector::stack;
 
 /// One of several contacts is located if its point's standard deviation is less (m).
 const SHARP: f64 = 0.01;
+/// Radius that holds 90 % of a normal distribution, in standard deviations of the distance: at most this, which is for a
+/// distribution along a line (for a circular one it is 1.52).
+const RADIUS_90: f64 = 1.645;
 /// Unknowns of a force on a line of action: a contact is checked only by torques beyond these.
 pub(super) const LINE_UNKNOWNS: usize = 5;
 /// Root mean square of the distance from one of two equally likely places, as a share of the distance between them.
@@ -127,6 +130,11 @@ impl ContactIsolator {
         contact.located = self.pushing && consistent && !rivals.open && self.is_near_enough(point_std);
         contact.verified = consistent && wrench.is_redundant();
         self.isolation.contacts.push(contact);
+    }
+
+    /// Whether 90 % of the places are within the distance asked for.
+    fn is_near_enough(&self, point_std: f64) -> bool {
+        RADIUS_90 * point_std <= self.locate_within
     }
 
     /// Torques of the region.
