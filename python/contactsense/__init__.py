@@ -37,7 +37,8 @@ from ._core import (
 )
 from .calibration import Calibration, calibrate
 from .errors import ContactSenseError, GeometryError, InputError, ModelError
-from .log import Log
+from .log import Log, Reading, read_log
+from .offline import Replay, ReplayedContact, replay
 from .robot import Robot
 
 __all__ = [
@@ -72,6 +73,9 @@ __all__ = [
     "Payload",
     "PayloadProposal",
     "RayHits",
+    "Reading",
+    "Replay",
+    "ReplayedContact",
     "Robot",
     "Surface",
     "SurfaceSamples",
@@ -82,4 +86,6 @@ __all__ = [
     "diagnose",
     "exciting_motion",
     "identify_tool",
+    "read_log",
+    "replay",
 ]

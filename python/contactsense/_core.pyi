@@ -1757,6 +1757,15 @@ class ContactMonitor:
         Raises:
             InputError: Names the argument; the state is then unchanged but for the time that passed.
         """
+    def _update_rows(
+        self, arrays: list[NDArray[np.float64]], wrenches: NDArray[np.float64] | None, external: bool
+    ) -> tuple[
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        list[tuple[int, tuple[Contact, ...]]],
+    ]: ...
     def update_external(
         self,
         q: ArrayLike,

@@ -18,6 +18,7 @@ from typer.core import TyperGroup
 from .. import ContactSenseError, __version__
 from .._extras import MissingExtraError
 from ..demo import command as demo
+from . import calibrate, diagnose, replay
 
 STUDIES = "contactsense-studies"  # the distribution that adds `study`
 
@@ -66,7 +67,8 @@ def _study() -> None:
 
 
 def _add_commands() -> None:
-    demo.register(app)
+    for command in (demo, replay, calibrate, diagnose):
+        command.register(app)
     added = {entry.name: entry for entry in entry_points(group="contactsense.commands")}
     for entry in added.values():
         entry.load()(app)

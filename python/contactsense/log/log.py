@@ -9,6 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
+from .reading import Reading
+
+_COLUMNS = ("time", "q", "v", "tau", "wrenches", "external_torque")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -23,6 +26,7 @@ class Log:
             joints]; none where only an external torque was recorded.
         wrenches: `(n, sensors, 6)`, readings of force/torque sensors [N, Nm].
         external_torque: `(n, nv)`, the external torque as the robot's vendor estimates it [Nm].
+        reading: how it was read from a file; None for a log of arrays.
 
     Raises:
         InputError: an array has the wrong shape or a number that is not finite, the time does not increase,
@@ -43,6 +47,7 @@ class Log:
     tau: NDArray[np.float64] | None
     wrenches: NDArray[np.float64] | None
     external_torque: NDArray[np.float64] | None
+    reading: Reading | None
 
     def __init__(
         self,
@@ -53,6 +58,7 @@ class Log:
         *,
         wrenches: ArrayLike | None = None,
         external_torque: ArrayLike | None = None,
+        reading: Reading | None = None,
     ) -> None:
         given = dict(time=time, q=q, v=v, tau=tau, wrenches=wrenches, external_torque=external_torque)
         if tau is None and external_torque is None:
@@ -63,6 +69,7 @@ class Log:
             array = None if value is None else _checked(name, value, dimensions.get(name, 2), rows)
             rows = rows if array is None else len(array)
             object.__setattr__(self, name, array)
+        object.__setattr__(self, "reading", reading)
         if np.any(np.diff(self.time) <= 0.0):
             row = int(np.flatnonzero(np.diff(self.time) <= 0.0)[0]) + 1
             raise InputError(f"time: must increase from row to row [s]; row {row} does not")
@@ -74,22 +81,24 @@ class Log:
 
     def __repr__(self) -> str:
         seconds = float(self.time[-1] - self.time[0]) if len(self) else 0.0
-        has = [field.name for field in fields(self) if getattr(self, field.name) is not None]
+        has = [name for name in _COLUMNS if getattr(self, name) is not None]
         return f"Log({len(self)} rows, {seconds:.3f} s: {', '.join(has)})"
 
     def __getitem__(self, rows: slice) -> Log:
         """The log of some rows."""
         if not isinstance(rows, slice):
             raise InputError(f"rows: must be a slice, not {type(rows).__name__}")
-        columns = (getattr(self, field.name) for field in fields(self))
-        return _restore(*(None if column is None else column[rows] for column in columns))
+        columns = (getattr(self, name) for name in _COLUMNS)
+        parts = [None if column is None else column[rows] for column in columns]
+        return _restore(*parts, self.reading)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restore, tuple(getattr(self, field.name) for field in fields(self))
 
 
-def _restore(time: Any, q: Any, v: Any, tau: Any, wrenches: Any, external_torque: Any) -> Log:
-    return Log(time, q, v, tau, wrenches=wrenches, external_torque=external_torque)
+def _restore(*columns: Any) -> Log:
+    time, q, v, tau, wrenches, external_torque, reading = columns
+    return Log(time, q, v, tau, wrenches=wrenches, external_torque=external_torque, reading=reading)
 
 
 def _checked(name: str, value: ArrayLike, dimensions: int, rows: int | None) -> NDArray[np.float64]:

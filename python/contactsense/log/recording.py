@@ -18,9 +18,9 @@ class Table:
     Args:
         name: the topic, or the file's name without its ending.
         kind: the message type as ROS writes it, such as `sensor_msgs/msg/JointState`; empty for other files.
-        columns: `(n,)` each, by name. Those of messages are named by field, such as `wrench.force.x`; elements of arrays
-            are named as `tau_J[0]`, and those of a `JointState` by joint, as `position[panda_joint1]`. The message's
-            own stamp is `header.stamp` [s].
+        columns: `(n,)` each, by name. Those of messages are named by field, such as `wrench.force.x`;
+            elements of arrays are named as `tau_J[0]`, and those of a `JointState` by joint, as
+            `position[panda_joint1]`. The message's own stamp is `header.stamp` [s].
         received: `(n,)`, when each message was received [s]; None for files other than bags.
     """
 
@@ -41,8 +41,10 @@ class Recording:
 
     Args:
         tables: in the order of the file.
-        left_out: what else the file has, one line each: topics of types without numbers, or without a definition.
-        damage: where the file is broken, one line each, with what could be read nevertheless; empty for a whole one.
+        left_out: what else the file has, one line each: topics of types without numbers, or without a
+            definition.
+        damage: where the file is broken, one line each, with what could be read nevertheless; empty for a
+            whole one.
     """
 
     tables: tuple[Table, ...]

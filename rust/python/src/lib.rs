@@ -25,6 +25,7 @@ mod isolator;
 mod monitor;
 mod monitor_external;
 mod monitor_payload;
+mod monitor_rows;
 mod monitor_tare;
 mod motion;
 mod names;

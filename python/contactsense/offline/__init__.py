@@ -1,0 +1,6 @@
+"""A log through a monitor, and files of what it found."""
+
+from .replay import replay
+from .result import Replay, ReplayedContact
+
+__all__ = ["Replay", "ReplayedContact", "replay"]

@@ -1,0 +1,107 @@
+"""Columns of what a monitor says, tick by tick."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..log import Log
+from .result import Replay
+from .summary import contacts_of
+
+Column = NDArray[np.float64]
+
+# Of a contact, in the order of the columns.
+_NUMBERS = ("probability", "point_std", "region_radius")
+_VECTORS = ("point", "point_local", "force")
+
+
+class Collector:
+    """Takes in the reports of a log's rows."""
+
+    def __init__(self, log: Log, nv: int) -> None:
+        self._log = log
+        rows = len(log)
+        self._collision = np.zeros(rows, dtype=bool)
+        self._onset = np.zeros(rows, dtype=bool)
+        self._significance = np.full(rows, np.nan)
+        self._external = np.zeros((rows, nv))
+        # One number for each contact in each tick: contacts themselves would take kilobytes.
+        self._rows, self._ids = array("q"), array("q")
+        self._links: list[str] = []
+        self._located = array("b")
+        self._values = array("d")
+        self._done = 0
+        self._episodes = 0
+        # Of contacts that the monitor does not follow: by episode and place in the report.
+        self._unnamed: dict[tuple[int, int], int] = {}
+
+    def add(
+        self,
+        rows: slice,
+        collision: Column,
+        onset: Column,
+        significance: Column,
+        external: Column,
+        contacts: Sequence[tuple[int, tuple[_core.Contact, ...]]],
+    ) -> None:
+        """What the monitor says of the next rows; `contacts` has those of each row that has some."""
+        self._collision[rows] = collision
+        self._onset[rows] = onset
+        self._significance[rows] = significance
+        self._external[rows] = external.reshape(-1, self._external.shape[1])
+        episodes = self._episodes + np.cumsum(onset)
+        for row, several in contacts:
+            for k, contact in enumerate(several):
+                self._add_contact(rows.start + row, (int(episodes[row]), k), contact)
+        self._episodes = int(episodes[-1])
+        self._done = rows.stop
+
+    def _add_contact(self, row: int, unnamed: tuple[int, int], contact: _core.Contact) -> None:
+        number = contact.id
+        if number is None:
+            number = self._unnamed.setdefault(unnamed, len(self._unnamed))
+        self._rows.append(row)
+        self._ids.append(number)
+        self._links.append(contact.link)
+        self._located.append(contact.located)
+        self._values.append(contact.link_probabilities.get(contact.link, np.nan))
+        for name in _NUMBERS:
+            self._values.append(getattr(contact, name))
+        for name in _VECTORS:
+            self._values.extend(getattr(contact, name))
+
+    def result(self, interrupted: bool) -> Replay:
+        """All that was taken in."""
+        done = slice(self._done)
+        ticks: dict[str, NDArray[Any]] = {
+            "time": self._log.time[done],
+            "collision": self._collision[done],
+            "onset": self._onset[done],
+            "significance": self._significance[done],
+            "external_torque": self._external[done],
+        }
+        columns = self._columns()
+        return Replay(self._log, ticks, columns, contacts_of(columns), interrupted)
+
+    def _columns(self) -> Mapping[str, NDArray[Any]]:
+        rows = np.array(self._rows, dtype=np.int64)
+        numbers = 1 + len(_NUMBERS)
+        values = np.array(self._values).reshape(len(rows), numbers + 3 * len(_VECTORS))
+        columns: dict[str, NDArray[Any]] = {
+            "row": rows,
+            "time": self._log.time[rows],
+            "id": np.array(self._ids, dtype=np.int64),
+            "link": np.array(self._links, dtype=object),
+            "located": np.array(self._located, dtype=bool),
+            "link_probability": values[:, 0].copy(),
+        }
+        columns |= {name: values[:, 1 + k].copy() for k, name in enumerate(_NUMBERS)}
+        for k, name in enumerate(_VECTORS):
+            columns[name] = values[:, numbers + 3 * k : numbers + 3 * (k + 1)].copy()
+        return columns

@@ -1,0 +1,62 @@
+"""Contacts and ticks as Parquet, one schema each."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._extras import require
+from .result import Replay
+from .whole import whole_file
+
+_CONTACT: dict[str, Any] = {
+    "id": np.int64, "start": np.float64, "end": np.float64, "link": str, "link_probability": np.float64,
+    "located": np.bool_, "point": 3, "point_local": 3, "region_radius": np.float64, "peak_force": np.float64,
+    "force": 3,
+}  # fmt: skip
+
+
+def write_parquet(replay: Replay, folder: str | os.PathLike[str]) -> None:
+    """See `Replay.to_parquet`."""
+    require("log", "pyarrow")
+    import pyarrow.parquet
+
+    tables = {
+        "contacts": contact_columns(replay),
+        "contact_ticks": replay.contact_ticks,
+        "ticks": replay.ticks,
+    }
+    for name, columns in tables.items():
+        with whole_file(Path(folder) / f"{name}.parquet") as file:
+            pyarrow.parquet.write_table(as_table(columns), file)
+
+
+def contact_columns(replay: Replay) -> dict[str, NDArray[Any]]:
+    """Columns with one value a contact."""
+    columns: dict[str, NDArray[Any]] = {}
+    for name, kind in _CONTACT.items():
+        values = [getattr(contact, name) for contact in replay.contacts]
+        if isinstance(kind, int):
+            columns[name] = np.array(values, dtype=np.float64).reshape(-1, kind)
+        else:
+            columns[name] = np.array(values, dtype=object if kind is str else kind)
+    return columns
+
+
+def as_table(columns: Mapping[str, NDArray[Any]]) -> Any:
+    """A `pyarrow.Table`; vectors are lists of fixed length, text is text also where there are no rows."""
+    import pyarrow as pa
+
+    def column(values: NDArray[Any]) -> Any:
+        if values.dtype == object:
+            return pa.array(values.tolist(), type=pa.string())
+        if values.ndim == 2:
+            return pa.FixedSizeListArray.from_arrays(pa.array(values.ravel()), values.shape[1])
+        return pa.array(np.ascontiguousarray(values))
+
+    return pa.table({name: column(values) for name, values in columns.items()})

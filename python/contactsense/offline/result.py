@@ -1,0 +1,123 @@
+"""What a monitor found in a log."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..log import Log
+
+
+@dataclass(frozen=True, eq=False)
+class ReplayedContact:
+    """One contact from its begin to its end.
+
+    Attributes:
+        id: which contact it is: the monitor's number.
+        start: time of its first tick, as the log's [s].
+        end: time of its last tick [s].
+        link: the likeliest link.
+        link_probability: of that link; NaN where the monitor works out no posterior.
+        located: whether 90 % of the posterior lie within the monitor's `locate_within` of the point.
+        point: `(3,)`, world frame [m]; NaN where the torques tell no point.
+        point_local: `(3,)`, in the link's frame [m].
+        region_radius: of the region that holds 90 % of the posterior [m].
+        peak_force: greatest force [N]; NaN where no force is known.
+        force: `(3,)`, at that time, world frame, acting on the robot [N].
+    """
+
+    id: int
+    start: float
+    end: float
+    link: str
+    link_probability: float
+    located: bool
+    point: NDArray[np.float64]
+    point_local: NDArray[np.float64]
+    region_radius: float
+    peak_force: float
+    force: NDArray[np.float64]
+
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name, as plain Python values; numbers that are not known are None."""
+        return {field.name: _plain(getattr(self, field.name)) for field in fields(self)}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Replay:
+    """A log with what a monitor says of it.
+
+    Attributes:
+        log: the log.
+        ticks: columns with one value a row that was replayed: `time`, `collision`, `onset`, `significance`,
+            `external_torque` `(n, nv)`; see `ContactReport`.
+        contact_ticks: columns with one value for each contact in each tick: `row`, `time`, `id`, `link`,
+            `link_probability`, `located`, `probability`, `point_std`, `region_radius`, `point`,
+            `point_local`, `force`; see `Contact`.
+        contacts: one for each contact, in the order of their begin.
+        interrupted: whether Ctrl-C ended it before the log's end.
+    """
+
+    log: Log
+    ticks: Mapping[str, NDArray[Any]]
+    contact_ticks: Mapping[str, NDArray[Any]]
+    contacts: tuple[ReplayedContact, ...]
+    interrupted: bool = False
+
+    def __repr__(self) -> str:
+        return f"Replay({len(self.ticks['time'])} rows, {len(self.contacts)} contacts)"
+
+    def to_parquet(self, folder: str | os.PathLike[str]) -> None:
+        """Writes `contacts.parquet`, `contact_ticks.parquet` and `ticks.parquet` into a folder.
+
+        Args:
+            folder: made if there is none.
+
+        Raises:
+            MissingExtraError: pyarrow is not installed.
+            OSError: a file cannot be written; none is left half written.
+        """
+        from .parquet import write_parquet
+
+        write_parquet(self, folder)
+
+    def to_json_lines(self, path: str | os.PathLike[str]) -> None:
+        """Writes one JSON object a contact, a line each; see `ReplayedContact.to_dict`.
+
+        Raises:
+            OSError: the file cannot be written; none is left half written.
+        """
+        from .json_lines import write_json_lines
+
+        write_json_lines(self, path)
+
+    def to_mcap(self, path: str | os.PathLike[str], robot: Any) -> None:
+        """Writes the log with what was found as an MCAP file of ROS 2 messages, which Foxglove shows.
+
+        Topics: `/joint_states` and `/contactsense/external_torque` of type `sensor_msgs/msg/JointState`, and
+        `/contactsense/contacts` of type `visualization_msgs/msg/MarkerArray`, in the frame `world`.
+
+        Args:
+            path: the file.
+            robot: the robot of the log, for the names of its joints.
+
+        Raises:
+            MissingExtraError: rosbags or mcap is not installed.
+            OSError: the file cannot be written; none is left half written.
+        """
+        from .mcap import write_mcap
+
+        write_mcap(self, path, robot)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return [_plain(number) for number in value.tolist()]
+    if isinstance(value, float) and not np.isfinite(value):
+        return None
+    return value

@@ -1,0 +1,49 @@
+"""One row a contact, of what was said of it in each of its ticks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .result import ReplayedContact
+
+
+def contacts_of(ticks: Mapping[str, NDArray[Any]]) -> tuple[ReplayedContact, ...]:
+    """The contacts in the order of their begin.
+
+    A contact's place is that of the last tick that has one, since what is known of it grows; its link is the
+    one of most ticks where no tick has a place.
+    """
+    numbers, first = np.unique(ticks["id"], return_index=True)
+    ordered = numbers[np.argsort(first, kind="stable")]
+    return tuple(_contact(int(number), ticks, np.flatnonzero(ticks["id"] == number)) for number in ordered)
+
+
+def _contact(number: int, ticks: Mapping[str, NDArray[Any]], rows: NDArray[np.intp]) -> ReplayedContact:
+    placed = rows[np.all(np.isfinite(ticks["point_local"][rows]), axis=1)]
+    located = rows[ticks["located"][rows]]
+    forces = np.linalg.norm(ticks["force"][rows], axis=1)
+    known = np.isfinite(forces)
+    peak = rows[int(np.argmax(np.where(known, forces, -1.0)))] if known.any() else None
+    if len(placed):
+        told = int((located if len(located) else placed)[-1])
+    else:
+        links, counts = np.unique(ticks["link"][rows].astype(str), return_counts=True)
+        most = links[int(np.argmax(counts))]
+        told = int(rows[ticks["link"][rows] == most][-1])
+    return ReplayedContact(
+        id=number,
+        start=float(ticks["time"][rows[0]]),
+        end=float(ticks["time"][rows[-1]]),
+        link=str(ticks["link"][told]),
+        link_probability=float(ticks["link_probability"][told]),
+        located=bool(ticks["located"][told]),
+        point=ticks["point"][told].copy(),
+        point_local=ticks["point_local"][told].copy(),
+        region_radius=float(ticks["region_radius"][told]),
+        peak_force=float(forces[known].max()) if known.any() else float("nan"),
+        force=ticks["force"][peak].copy() if peak is not None else np.full(3, np.nan),
+    )
