@@ -12,7 +12,7 @@ from typing import Any, BinaryIO
 from ..._extras import require
 from ...errors import InputError
 
-# Most bytes that a reader holds of one file [B]: a day of 30 signals at 100 Hz as text is 3 GB, and a computer
+# Most bytes a reader holds of one file [B]: a day of 30 signals at 100 Hz as text is 3 GB, and a computer
 # that works with logs has this memory. A small file that unpacks to more is made to fill the memory.
 MOST_BYTES = 4 << 30
 # Read and unpacked at a time [B]: the bound is exceeded by no more than this.
