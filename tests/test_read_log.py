@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from log_files import DT, arm, named_columns, pushed, write_csv
-from robots import SHARED, robot_named
+from robots import BY_NAME, SHARED
 
 import contactsense as cs
 
@@ -139,7 +139,7 @@ def test_files_are_joined_by_time(tmp_path: Path, columns: dict[str, np.ndarray]
             part = {name: rows[20::2] for name, rows in part.items()}
         write_csv(tmp_path / f"{word}.csv", part)
     log = cs.read_log(tmp_path, arm())
-    np.testing.assert_allclose(log.time, pushed().time[:180], atol=1e-12)
+    np.testing.assert_allclose(log.time, pushed().time[20:200], atol=1e-12)
     np.testing.assert_allclose(log.q, pushed().q[20:200], atol=1e-12)
     np.testing.assert_allclose(log.tau, np.repeat(pushed().tau[20:200:2], 2, axis=0), atol=1e-12)
 
@@ -200,9 +200,21 @@ def test_a_file_without_a_robot_in_it_says_what_it_has(tmp_path: Path) -> None:
         cs.read_log(tmp_path / "nosuch.csv", arm())
 
 
+def test_numbered_columns_of_another_number_of_joints_are_no_match(
+    tmp_path: Path, columns: dict[str, np.ndarray]
+) -> None:
+    six = {name: rows for name, rows in columns.items() if not name.endswith("7")}
+    with pytest.raises(cs.InputError, match=r"nothing holds positions of the robot's 7 joints, .*'pos_1'"):
+        cs.read_log(write_csv(tmp_path / "a.csv", six), arm())
+
+
+def panda() -> cs.Robot:
+    return BY_NAME["panda"].robot(locked_joints=["panda_finger_joint1", "panda_finger_joint2"])
+
+
 @pytest.mark.shared
 def test_the_panda_of_a_public_bag_is_read() -> None:
-    log = cs.read_log(SHARED / "real/panda_free/panda_exciting_trajectory.db3", robot_named("panda"))
+    log = cs.read_log(SHARED / "real/panda_free/panda_exciting_trajectory.db3", panda())
     assert len(log) > 700
     assert log.tau is not None
     assert 20.0 < log.time[-1] < 30.0
@@ -210,7 +222,7 @@ def test_the_panda_of_a_public_bag_is_read() -> None:
 
 @pytest.mark.shared
 def test_the_touches_of_a_public_csv_are_read() -> None:
-    log = cs.read_log(SHARED / "real/franka_touch/a4.csv.gz", robot_named("panda"))
+    log = cs.read_log(SHARED / "real/franka_touch/a4.csv.gz", panda())
     assert log.tau is not None
     assert log.external_torque is not None
     assert log.q.shape == (3148, 7)

@@ -81,6 +81,10 @@ def choose(
     return found
 
 
+def _joints(joints: Sequence[str]) -> str:
+    return f"the robot's {len(joints)} joints, {', '.join(joints)}"
+
+
 def listing(recording: Recording) -> str:
     """The first columns of all tables, for messages."""
     shown = 12
@@ -100,7 +104,7 @@ def _groups(table: Table, joints: Sequence[str]) -> list[Group]:
             by_source.setdefault((told.quantity, told.source), {})[told.joint] = column
     groups = []
     for (quantity, source), named in by_source.items():
-        matched = _numbered(joints, list(named)) or match(joints, list(named))
+        matched = _matched(joints, list(named))
         if matched:
             others = tuple(named[name] for name in named if name not in matched.values())
             of_joints = {joint: named[name] for joint, name in matched.items()}
@@ -108,9 +112,20 @@ def _groups(table: Table, joints: Sequence[str]) -> list[Group]:
     return groups
 
 
+def _matched(joints: Sequence[str], names: Sequence[str]) -> dict[str, str]:
+    """The name of each joint. Numbers tell joints only by their order, unless there are names beside them."""
+    if all(map(_is_number, names)):
+        return _numbered(joints, names)
+    return match(joints, names)
+
+
+def _is_number(name: str) -> bool:
+    return re.fullmatch(r"[0-9]{1,9}", name) is not None
+
+
 def _numbered(joints: Sequence[str], names: Sequence[str]) -> dict[str, str]:
     """Numbers without names, from 0 or 1 on, are the robot's joints in order if there are as many."""
-    numbers = sorted((int(name), name) for name in names if re.fullmatch(r"[0-9]+", name))
+    numbers = sorted((int(name), name) for name in names if _is_number(name))
     first = numbers[0][0] if numbers else -1
     consecutive = [number for number, _ in numbers] == list(range(first, first + len(joints)))
     if len(names) != len(joints) or first not in (0, 1) or not consecutive:
@@ -134,7 +149,7 @@ def _named(recording: Recording, joints: Sequence[str], quantity: str, given: st
             matching = [name for name in table.columns if fnmatch.fnmatchcase(name, pattern)]
             before, _, after = given.partition("*")
             keys = {name[len(before) : len(name) - len(after)]: name for name in matching}
-            matched = _numbered(joints, list(keys)) or match(joints, list(keys))
+            matched = _matched(joints, list(keys))
             columns = {joint: keys[key] for joint, key in matched.items()}
             others = tuple(name for name in matching if name not in columns.values())
         else:

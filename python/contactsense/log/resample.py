@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from .time_axis import ROUNDING
 
 Rows = NDArray[np.float64]
 
@@ -19,11 +20,9 @@ _MOST_ROWS = 100_000_000
 
 def differences(time: Rows, position: Rows) -> Rows:
     """Central differences over `SPAN`, or over the rows next to each where those are farther apart."""
-    rows = np.arange(len(time))
-    before = np.minimum(np.searchsorted(time, time - 0.5 * SPAN), np.maximum(rows - 1, 0))
-    after = np.maximum(
-        np.searchsorted(time, time + 0.5 * SPAN, side="right") - 1, np.minimum(rows + 1, rows[-1])
-    )
+    rows, half = np.arange(len(time)), 0.5 * SPAN + ROUNDING
+    before = np.minimum(np.searchsorted(time, time - half), np.maximum(rows - 1, 0))
+    after = np.maximum(np.searchsorted(time, time + half, side="right") - 1, np.minimum(rows + 1, rows[-1]))
     velocity: Rows = (position[after] - position[before]) / (time[after] - time[before])[:, None]
     return velocity
 

@@ -27,7 +27,7 @@ _LATE_ROWS = 10
 # A step of so many median ones is a gap.
 _GAP = 5.0
 # Stamps since 1970 are rounded to this [s].
-_ROUNDING = 1e-6
+ROUNDING = 1e-6
 
 
 @dataclass(frozen=True)
@@ -135,4 +135,4 @@ def _without_jumps(time: Column) -> tuple[Column, int]:
 
 def held(time: Column, table_time: Column) -> NDArray[np.intp]:
     """For each time the row of another table that was the last by then; -1 before its first."""
-    return np.searchsorted(table_time, time + _ROUNDING, side="right") - 1
+    return np.searchsorted(table_time, time + ROUNDING, side="right") - 1
