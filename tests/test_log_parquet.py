@@ -54,6 +54,7 @@ def test_all_kinds_of_numbers(file: Path) -> None:
             "same": pa.array([2.5, 2.5, None]).dictionary_encode(),
             "nothing": pa.nulls(3),
             "text": ["1", "2", "3"],
+            "s": [{"text": "x", "n": 1}] * 3,
         }
     )
     file.write_bytes(packed(table))
@@ -74,10 +75,11 @@ def test_all_kinds_of_numbers(file: Path) -> None:
         "day": [172800] * 3,
         "same": [2.5, 2.5, nan],
         "nothing": [nan] * 3,
+        "s.n": [1] * 3,
     }
     assert list(got.columns) == list(expected)
     np.testing.assert_equal({name: column.tolist() for name, column in got.columns.items()}, expected)
-    assert recording.left_out == ("text: a column of type string",)
+    assert recording.left_out == ("text: a column of type string", "s.text: a column of type string")
     assert (got.name, got.kind, got.received, recording.damage) == ("run", "", None, ())
 
 
@@ -112,7 +114,7 @@ def test_structures_and_lists(file: Path) -> None:
     }
     got = {name: column.tolist() for name, column in recording.tables[0].columns.items()}
     np.testing.assert_equal(got, expected)
-    assert recording.left_out == ("ragged: lists of several lengths", "empty: no lists")
+    assert recording.left_out == ("ragged: lists of several lengths", "empty: lists of length []")
 
 
 @pytest.mark.parametrize(

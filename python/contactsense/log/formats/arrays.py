@@ -13,47 +13,47 @@ from .dialect import unique
 
 # Most columns that one array gives: no robot has as many signals, but pictures have as many pixels.
 MOST_COLUMNS = 10_000
-_SECONDS = np.timedelta64(1, "s")
+_SECONDS = {
+    "W": 604_800.0,
+    "D": 86_400.0,
+    "h": 3600.0,
+    "m": 60.0,
+    "s": 1.0,
+    "ms": 1e-3,
+    "us": 1e-6,
+    "ns": 1e-9,
+}
 
 
-class NoColumnsError(Exception):
-    """An array gives no columns of numbers; the message says why."""
+def flattened(name: str, array: NDArray[Any], left_out: list[str]) -> Iterator[tuple[str, Column]]:
+    """The columns of an array whose first axis counts rows, with their names; `left_out` gets what is none.
 
-
-def flattened(name: str, array: NDArray[Any]) -> Iterator[tuple[str, Column]]:
-    """The columns of an array whose first axis counts rows, with their names.
-
-    Fields are named `name.field`, elements of further axes `name[0]`, `name[1][2]`.
-
-    Raises:
-        NoColumnsError: it has no rows, more than `MOST_COLUMNS`, or no numbers.
+    Fields are named `name.field`, elements of further axes `name[0]`, `name[1][2]`. Of times, the seconds.
     """
+    kind = array.dtype.kind
     if array.ndim == 0:
-        raise NoColumnsError("a single value")
-    if array.dtype.names is not None:
+        left_out.append(f"{name}: a single value")
+    elif array.dtype.names is not None:
         for field in array.dtype.names:
-            yield from flattened(f"{name}.{field}" if name else field, array[field])
-        return
-    if np.prod(array.shape[1:], dtype=float) > MOST_COLUMNS:
-        raise NoColumnsError(f"of shape {array.shape}: more than {MOST_COLUMNS} columns")
-    if array.dtype.kind == "c":
-        yield from flattened(f"{name}.real", array.real)
-        yield from flattened(f"{name}.imag", array.imag)
-        return
-    if array.dtype.kind not in "biufmM":
-        raise NoColumnsError(f"of type {array.dtype}")
-    for index in np.ndindex(array.shape[1:]):
-        column = array[(slice(None), *index)]
-        yield "".join([name, *(f"[{k}]" for k in index)]), _numbers(column)
+            yield from flattened(f"{name}.{field}" if name else field, array[field], left_out)
+    elif np.prod(array.shape[1:], dtype=float) > MOST_COLUMNS:
+        left_out.append(f"{name}: of shape {array.shape}, more than {MOST_COLUMNS} columns")
+    elif kind == "c":
+        yield from flattened(f"{name}.real", array.real, left_out)
+        yield from flattened(f"{name}.imag", array.imag, left_out)
+    elif kind not in "biufmM" or (kind in "mM" and np.datetime_data(array.dtype)[0] not in _SECONDS):
+        left_out.append(f"{name}: of type {array.dtype}")
+    else:
+        for index in np.ndindex(array.shape[1:]):
+            column = array[(slice(None), *index)]
+            yield "".join([name, *(f"[{k}]" for k in index)]), _numbers(column)
 
 
 def _numbers(column: NDArray[Any]) -> Column:
     if column.dtype.kind in "mM":
-        missing = np.isnat(column)
-        if column.dtype.kind == "M":
-            column = column - np.datetime64(0, np.datetime_data(column.dtype)[0])
-        column = np.where(missing, np.nan, column / _SECONDS)
-    with np.errstate(all="ignore"):  # what is not a number in the file is none here, and no warning
+        unit, count = np.datetime_data(column.dtype)
+        column = np.where(np.isnat(column), np.nan, column.astype(np.int64) * (_SECONDS[unit] * count))
+    with np.errstate(all="ignore"):  # signalling NaN, or a long double that is too large
         return np.ascontiguousarray(column, dtype=np.float64)
 
 

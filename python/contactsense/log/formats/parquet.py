@@ -11,7 +11,7 @@ import numpy as np
 from ..._extras import require
 from ...errors import InputError
 from ..recording import Column, Recording, Table
-from .arrays import MOST_COLUMNS, NoColumnsError
+from .arrays import MOST_COLUMNS
 from .dialect import unique
 from .unpack import MOST_BYTES
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 _NUMBER = 8  # bytes of one
+_BATCH = 1 << 16  # rows read at a time: lists may be long, of which memory is known only when they are read
 _MAGIC = b"PAR1"
 _PER_SECOND = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
 # What the description of a file may need at most [B]: it is unpacked before anything is known of it.
@@ -51,6 +52,7 @@ def read(path: Path) -> Recording:
 
 
 def _columns(path: Path) -> tuple[dict[str, Column], list[str]]:
+    import pyarrow as pa
     from pyarrow import parquet
 
     with parquet.ParquetFile(
@@ -60,28 +62,28 @@ def _columns(path: Path) -> tuple[dict[str, Column], list[str]]:
         page_checksum_verification=True,
     ) as file:
         about = file.metadata
-        groups = [about.row_group(k) for k in range(about.num_row_groups)]
-        chunks = [group.column(k) for group in groups for k in range(group.num_columns)]
-        # Of columns that repeat one number the file has next to nothing, but memory is needed for each row.
-        need = max(
-            _NUMBER * sum(chunk.num_values for chunk in chunks),
-            sum(chunk.total_uncompressed_size for chunk in chunks),
-            _NUMBER * about.num_rows,
-        )
-        if need > MOST_BYTES:
+        # Of columns that repeat one number the file has next to nothing, but memory is needed for each row. What
+        # it says of single columns is not asked: if that is broken, the library ends the program.
+        need = _NUMBER * about.num_rows * about.num_columns
+        batches: list[pa.RecordBatch] = []
+        held = 0
+        source = file.iter_batches(_BATCH)
+        while max(need, held) <= MOST_BYTES and (batch := next(source, None)) is not None:
+            batches.append(batch)
+            held += batch.nbytes
+        if max(need, held) > MOST_BYTES:
             raise InputError(f"path: {path} needs more than {MOST_BYTES >> 20} MiB of memory; split it")
-        table = file.read()
+        table = pa.Table.from_batches(batches, file.schema_arrow)
     columns: dict[str, Column] = {}
-    left_out = []
+    left_out: list[str] = []
     for name, chunked in zip(unique(table.column_names), table.columns, strict=True):
-        try:
-            columns.update(_flattened(name, chunked.combine_chunks()))
-        except NoColumnsError as error:
-            left_out.append(f"{name}: {error}")
+        columns.update(_flattened(name, chunked.combine_chunks(), left_out))
     return columns, left_out
 
 
-def _flattened(name: str, array: pa.Array | pa.ChunkedArray) -> Iterator[tuple[str, Column]]:
+def _flattened(
+    name: str, array: pa.Array | pa.ChunkedArray, left_out: list[str]
+) -> Iterator[tuple[str, Column]]:
     """The columns of an array: fields of structures as `name.field`, elements of lists as `name[0]`."""
     import pyarrow as pa
     import pyarrow.compute as pc
@@ -90,25 +92,28 @@ def _flattened(name: str, array: pa.Array | pa.ChunkedArray) -> Iterator[tuple[s
         array = pa.concat_arrays(array.chunks) if array.num_chunks else pa.array([], array.type)
     kind = array.type
     if pa.types.is_dictionary(kind):
-        yield from _flattened(name, array.dictionary_decode())
+        yield from _flattened(name, array.dictionary_decode(), left_out)
     elif pa.types.is_struct(kind):
         for field, child in zip(kind, array.flatten(), strict=True):
-            yield from _flattened(f"{name}.{field.name}", child)
+            yield from _flattened(f"{name}.{field.name}", child, left_out)
     elif pa.types.is_list(kind) or pa.types.is_large_list(kind) or pa.types.is_fixed_size_list(kind):
         lengths = pc.unique(pc.list_value_length(array).drop_null()).to_pylist()
-        if len(lengths) != 1:
-            raise NoColumnsError("lists of several lengths" if lengths else "no lists")
-        if lengths[0] > MOST_COLUMNS:
-            raise NoColumnsError(f"more than {MOST_COLUMNS} columns")
+        if len(lengths) != 1 or lengths[0] > MOST_COLUMNS:
+            left_out.append(
+                f"{name}: lists of {'several lengths' if len(lengths) > 1 else f'length {lengths}'}"
+            )
+            return
         given, elements = array.is_valid().to_numpy(zero_copy_only=False), array.flatten()
         first = np.where(given, (np.cumsum(given) - 1) * lengths[0], 0)
         for k in range(lengths[0]):
-            yield from _flattened(f"{name}[{k}]", elements.take(pa.array(first + k, mask=~given)))
+            yield from _flattened(f"{name}[{k}]", elements.take(pa.array(first + k, mask=~given)), left_out)
+    elif (numbers := _numbers(array)) is not None:
+        yield name, numbers
     else:
-        yield name, _numbers(array)
+        left_out.append(f"{name}: a column of type {kind}")
 
 
-def _numbers(array: pa.Array) -> Column:
+def _numbers(array: pa.Array) -> Column | None:
     import pyarrow as pa
 
     kind, factor = array.type, 1.0
@@ -125,6 +130,6 @@ def _numbers(array: pa.Array) -> Column:
         or pa.types.is_decimal(kind)
         or pa.types.is_null(kind)
     ):
-        raise NoColumnsError(f"a column of type {kind}")
+        return None
     numbers = array.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
     return np.ascontiguousarray(numbers * factor, dtype=np.float64)
