@@ -1,0 +1,120 @@
+"""The layout of messages: every number as rosbags itself decodes it, in both byte orders and for ROS 1."""
+
+import numpy as np
+import pytest
+from bag_files import ARM, CUSTOM, JOINT_STATE, STORES, flat_numbers, joint_state, random_message
+
+from contactsense.log.formats.layout import LayoutError
+from contactsense.log.formats.messages import types_of
+from contactsense.log.formats.walk import MAX_ELEMENTS, Walk
+
+KINDS = [
+    JOINT_STATE,
+    "geometry_msgs/msg/WrenchStamped",
+    "std_msgs/msg/Float64MultiArray",
+    "trajectory_msgs/msg/JointTrajectory",
+    "sensor_msgs/msg/Imu",
+    "sensor_msgs/msg/BatteryState",
+    "nav_msgs/msg/Odometry",
+    "diagnostic_msgs/msg/DiagnosticArray",
+    "control_msgs/msg/DynamicJointState",
+    "std_msgs/msg/Empty",
+    "my_msgs/msg/State",
+]
+
+
+def encoded(message, kind, form):
+    if form == "ros1":
+        return bytes(STORES["ros1"].serialize_ros1(message, kind))
+    return bytes(STORES["cdr"].serialize_cdr(message, kind, little_endian=form == "little"))
+
+
+def read_one(data, kind, encoding, definition=""):
+    layout = Walk(data, types_of(kind, encoding, definition), encoding).layout(kind)
+    rows = np.frombuffer(data, np.uint8)[None]
+    assert layout.fits(rows).all()
+    return dict(zip(layout.names, layout.read(rows)[0], strict=True))
+
+
+@pytest.mark.parametrize("form", ["little", "big", "ros1"])
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_number_is_that_of_rosbags(kind, form):
+    rng = np.random.default_rng(3)
+    encoding = "ros1" if form == "ros1" else "cdr"
+    definition = CUSTOM if kind.startswith("my_msgs") else ""
+    for _ in range(40):
+        data = encoded(random_message(rng, encoding, kind), kind, form)
+        store = STORES[encoding]
+        decode = store.deserialize_ros1 if form == "ros1" else store.deserialize_cdr
+        wanted = flat_numbers(decode(data, kind), encoding, kind)
+        np.testing.assert_array_equal(list(read_one(data, kind, encoding, definition).values()), wanted)
+
+
+@pytest.mark.parametrize("encoding", ["cdr", "ros1"])
+def test_joint_states_are_named_by_joint(encoding):
+    data = joint_state(encoding, ARM, 5_000_000_007, np.arange(7.0), effort=[])
+    found = read_one(data, JOINT_STATE, encoding)
+    assert found["header.stamp"] == 5 + 7e-9
+    assert found["position[arm_joint3]"] == found["velocity[arm_joint3]"] == 2.0
+    assert not [name for name in found if name.startswith("effort")]
+
+
+def test_names_that_repeat_name_nothing():
+    data = joint_state("cdr", ("a", "a"), 0, [1.0, 2.0])
+    assert read_one(data, JOINT_STATE, "cdr")["position[1]"] == 2.0
+
+
+def test_interfaces_and_joints_name_dynamic_states():
+    types = STORES["cdr"].types
+    head = types["std_msgs/msg/Header"](types["builtin_interfaces/msg/Time"](1, 0), "")
+    value = types["control_msgs/msg/InterfaceValue"]
+    values = [value(["position", "effort"], np.array([1.0, 2.0])), value(["position"], np.array([3.0]))]
+    message = types["control_msgs/msg/DynamicJointState"](head, ["a", "b"], values)
+    kind = "control_msgs/msg/DynamicJointState"
+    assert read_one(encoded(message, kind, "little"), kind, "cdr") == {
+        "header.stamp": 1.0,
+        "interface_values[a].values[position]": 1.0,
+        "interface_values[a].values[effort]": 2.0,
+        "interface_values[b].values[position]": 3.0,
+    }
+
+
+def test_long_arrays_give_no_columns():
+    kind = "std_msgs/msg/Float64MultiArray"
+    layout = STORES["cdr"].types["std_msgs/msg/MultiArrayLayout"]([], 0)
+    message = STORES["cdr"].types[kind](layout, np.zeros(MAX_ELEMENTS + 1))
+    assert list(read_one(encoded(message, kind, "little"), kind, "cdr")) == ["layout.data_offset"]
+
+
+def test_another_shape_does_not_fit():
+    first = joint_state("cdr", ("ab", "cd"), 0, [1.0, 2.0])
+    layout = Walk(first, types_of(JOINT_STATE, "cdr", ""), "cdr").layout(JOINT_STATE)
+    others = [
+        joint_state("cdr", ("ab", "cd"), 9, [3.0, 4.0]),
+        joint_state("cdr", ("cd", "ab"), 0, [1.0, 2.0]),
+        b"\0\0" + first[2:],
+    ]
+    rows = np.frombuffer(b"".join(others), np.uint8).reshape(3, -1)
+    assert layout.fits(rows).tolist() == [True, False, False]
+
+
+@pytest.mark.parametrize("kept", range(0, 300, 7))
+def test_a_cut_message_is_refused(kept):
+    data = joint_state("cdr", ARM, 0, np.zeros(7))
+    with pytest.raises(LayoutError):
+        Walk(data[:kept], types_of(JOINT_STATE, "cdr", ""), "cdr").layout(JOINT_STATE)
+
+
+@pytest.mark.parametrize(
+    "definition",
+    ["float64[4000000000] a", "State[] a", "State a", "wstring a", "Unknown a", "float64[] a\nfloat64[] a"],
+)
+def test_a_hostile_definition_is_refused(definition):
+    kind = "my_msgs/msg/State"
+    with pytest.raises(LayoutError):
+        Walk(b"\0\1\0\0" + b"\1\0\0\0" * 1000, types_of(kind, "cdr", definition), "cdr").layout(kind)
+
+
+def test_a_broken_definition_gives_no_type():
+    assert types_of("my_msgs/msg/State", "cdr", "float64 [[[") is None
+    assert types_of("my_msgs/msg/State", "cdr", "\0" * 1000) is None
