@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import fnmatch
+import logging
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Literal
@@ -80,10 +81,20 @@ def load_robot(
     for key, value in pairs("lock", locked, default="0").items():
         matching = [key]
         if "*" in key:
-            known = known or load().joint_names
+            known = known or _quietly(load).joint_names
             matching = fnmatch.filter(known, key)
         joints.update(dict.fromkeys(matching, _number("lock", value)))
     return load(locked_joints=joints)
+
+
+def _quietly(load: Callable[[], Robot]) -> Robot:
+    """Warnings of a robot are logged when it is loaded with its joints locked."""
+    logger = logging.getLogger("contactsense")
+    before, logger.disabled = logger.disabled, True
+    try:
+        return load()
+    finally:
+        logger.disabled = before
 
 
 def load_log(

@@ -71,18 +71,15 @@ def choose(
         if best:
             found[quantity] = best[0]
     if POSITION not in found:
-        raise InputError(
-            f"columns: nothing holds positions of the robot's joints; there are {listing(recording)}"
-        )
+        raise InputError(_nothing("positions", joints, recording))
     if not {TORQUE, EXTERNAL, CURRENT} & set(found):
-        raise InputError(
-            f"columns: nothing holds torques of the robot's joints; there are {listing(recording)}"
-        )
+        raise InputError(_nothing("torques", joints, recording))
     return found
 
 
-def _joints(joints: Sequence[str]) -> str:
-    return f"the robot's {len(joints)} joints, {', '.join(joints)}"
+def _nothing(what: str, joints: Sequence[str], recording: Recording) -> str:
+    of_joints = f"the robot's {len(joints)} joints, {', '.join(joints)}"
+    return f"columns: nothing holds {what} of {of_joints}; there are {listing(recording)}"
 
 
 def listing(recording: Recording) -> str:

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from ..recording import Recording, Table
 from .layout import Layout, LayoutError
-from .messages import IsWanted, default_wanted, normal_kind, types_of
 from .mapping import UnpackError, is_zstd, unpack_zstd
+from .messages import IsWanted, default_wanted, normal_kind, types_of
 from .walk import Types, Walk
 
 BATCH_BYTES = 2**23  # of messages decoded at once: large enough for numpy, small beside a log

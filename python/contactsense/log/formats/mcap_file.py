@@ -9,6 +9,7 @@ from ..._extras import require
 from ...errors import InputError
 from ..recording import Recording
 from .collect import BATCH_BYTES, Channel, Collector
+from .mapping import mapped
 from .mcap_records import (
     CHANNEL,
     CHUNK,
@@ -27,7 +28,6 @@ from .mcap_records import (
     unpack_chunk,
 )
 from .messages import IsWanted
-from .mapping import mapped
 
 
 def read(path: Path, is_wanted: IsWanted | None = None) -> Recording:

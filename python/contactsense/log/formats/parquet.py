@@ -62,8 +62,8 @@ def _columns(path: Path) -> tuple[dict[str, Column], list[str]]:
         page_checksum_verification=True,
     ) as file:
         about = file.metadata
-        # Of columns that repeat one number the file has next to nothing, but memory is needed for each row. What
-        # it says of single columns is not asked: if that is broken, the library ends the program.
+        # Of columns that repeat one number the file has next to nothing, but memory is needed for each row.
+        # What it says of single columns is not asked: if that is broken, the library ends the program.
         need = _NUMBER * about.num_rows * about.num_columns
         batches: list[pa.RecordBatch] = []
         held = 0

@@ -13,8 +13,8 @@ from ...errors import InputError
 from ..recording import Recording
 from . import mcap_file, rosbag2_sqlite
 from .collect import Collector
-from .messages import IsWanted
 from .mapping import ZSTD_ENDINGS
+from .messages import IsWanted
 
 METADATA = "metadata.yaml"
 MAX_METADATA = 2**22  # bytes; the files of a bag with hundreds of topics have 2^18

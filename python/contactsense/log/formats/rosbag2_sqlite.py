@@ -10,10 +10,10 @@ from ..._extras import require
 from ...errors import InputError
 from ..recording import Recording
 from .collect import BATCH_BYTES, Channel, Collector
+from .mapping import mapped
 from .messages import IsWanted
 from .sqlite_pages import LEAF, Database
 from .sqlite_rows import PageError, record, usual_message
-from .mapping import mapped
 
 
 def read(path: Path, is_wanted: IsWanted | None = None) -> Recording:

@@ -64,31 +64,44 @@ pub(super) fn torque_scales(
     scales
 }
 
-/// The factor that makes a joint's torque most like that of the description, friction and bias aside; one where it may be one.
+/// The factor from a joint's measured torque to that of the description, friction and bias aside; one where it may be one.
+///
+/// Errors of what a line is fitted over make it flat: of the measured torque over the description's as well as the other way
+/// round. The truth lies between the two slopes, and both must tell that it is not one.
 fn likely(rows: &[Row], joint: usize) -> f64 {
-    let (mut matrix, mut right) =
-        (SMatrix::<f64, COLUMNS, COLUMNS>::zeros(), SVector::<f64, COLUMNS>::zeros());
-    let mut square = 0.0;
-    for row in rows {
-        let own = own_terms(row, joint, SHAPE);
-        let columns = SVector::from([torque(row, joint), own[BIAS], own[COULOMB], own[VISCOUS]]);
-        let model = torque(row, joint) - row.unexplained[joint];
-        matrix += columns * columns.transpose();
-        right += columns * model;
-        square += model * model;
-    }
-    let Some(inverse) = matrix.try_inverse() else { return 1.0 };
-    let found = inverse * right;
-    let left = (square - found.dot(&right)).max(0.0) / rows.len() as f64;
-    let error = (left * TOGETHER * inverse[(0, 0)]).sqrt();
-    let scale = found[0];
-    if (scale - 1.0).abs() <= f64::max(LEAST, SIGNIFICANT * error) || scale == 0.0 || !scale.is_finite() {
+    let (to_model, from_model) = (slope(rows, joint, false), slope(rows, joint, true));
+    let [Some(forth), Some(back)] = [to_model, from_model] else { return 1.0 };
+    let scale = (forth * back).sqrt().copysign(forth);
+    let agree = forth * back > 0.0 && (forth - 1.0) * (back - 1.0) > 0.0;
+    if !agree || scale == 0.0 || !scale.is_finite() {
         1.0
     } else if (scale + 1.0).abs() <= LEAST {
         -1.0
     } else {
         scale
     }
+}
+
+/// That factor by a line over the measured torque, or `inverted`, over the description's; none where it may be one.
+fn slope(rows: &[Row], joint: usize, inverted: bool) -> Option<f64> {
+    let (mut matrix, mut right) =
+        (SMatrix::<f64, COLUMNS, COLUMNS>::zeros(), SVector::<f64, COLUMNS>::zeros());
+    let mut square = 0.0;
+    for row in rows {
+        let own = own_terms(row, joint, SHAPE);
+        let (measured, model) = (torque(row, joint), torque(row, joint) - row.unexplained[joint]);
+        let (over, fitted) = if inverted { (model, measured) } else { (measured, model) };
+        let columns = SVector::from([over, own[BIAS], own[COULOMB], own[VISCOUS]]);
+        matrix += columns * columns.transpose();
+        right += columns * fitted;
+        square += fitted * fitted;
+    }
+    let inverse = matrix.try_inverse()?;
+    let found = inverse * right;
+    let left = (square - found.dot(&right)).max(0.0) / rows.len() as f64;
+    let error = (left * TOGETHER * inverse[(0, 0)]).sqrt();
+    let differs = (found[0] - 1.0).abs() > f64::max(LEAST, SIGNIFICANT * error);
+    differs.then_some(if inverted { 1.0 / found[0] } else { found[0] })
 }
 
 /// What held-out blocks leave with these scales, in units of the measured torque.

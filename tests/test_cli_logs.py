@@ -1,0 +1,206 @@
+"""Commands on logs: what they print, what they write, how they end."""
+
+from __future__ import annotations
+
+import json
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+import pytest
+from log_files import arm, named_columns, pushed, write_csv
+from robots import BY_NAME, EXAMPLE_SHARE, SHARED
+
+import contactsense as cs
+from contactsense.cli.app import run
+
+WORDS = {"position": "pos", "velocity": "vel", "torque": "effort"}
+PANDA = BY_NAME["panda"]
+
+
+def columns(log: cs.Log) -> dict[str, np.ndarray]:
+    names = [str(number) for number in range(1, 8)]
+    return {"time": log.time, **named_columns(log, names, WORDS)}
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    return write_csv(tmp_path / "pushed.csv", columns(pushed()))
+
+
+def replay(file: Path, *more: str) -> list[str]:
+    return ["replay", str(file), "--robot", "iiwa14", "--threshold", "0.6", *more]
+
+
+def test_replay_prints_contacts_and_how_the_file_was_read(
+    file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(replay(file)) == 0
+    told = capsys.readouterr()
+    assert "pushed.csv: 1 contacts in 2.0 s" in told.out
+    assert "iiwa_link_7" in told.out
+    assert "position from 'pos_1' to 'pos_7' of pushed [rad]" in told.err
+
+
+def test_replay_as_json_is_what_the_library_says(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(replay(file, "--json")) == 0
+    (line,) = capsys.readouterr().out.splitlines()
+    log = cs.read_log(file, arm())
+    monitor = cs.ContactMonitor(arm(), dt=float(np.median(np.diff(log.time))), torque_threshold=0.6)
+    (contact,) = cs.replay(log, monitor).contacts
+    assert json.loads(line) == {"log": str(file), **contact.to_dict()}
+
+
+def test_replay_writes_all_files(file: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert run(replay(file, "--out", str(out))) == 0
+    written = {"contacts.jsonl", "contacts.parquet", "contact_ticks.parquet", "ticks.parquet", "replay.mcap"}
+    assert {path.name for path in out.iterdir()} == written
+
+
+def test_several_logs_have_a_folder_each(file: Path, tmp_path: Path) -> None:
+    other = write_csv(tmp_path / "free.csv", columns(pushed()[:300]))
+    out = tmp_path / "out"
+    assert run(["replay", str(other), *replay(file, "--out", str(out))[1:]]) == 0
+    assert (out / "pushed" / "contacts.jsonl").read_text().count("\n") == 1
+    assert (out / "free" / "contacts.jsonl").read_text() == ""
+
+
+def test_a_damaged_file_gives_what_can_be_read_and_its_own_exit_code(
+    file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    whole = file.read_bytes()
+    file.write_bytes(whole[: int(0.9 * len(whole))])
+    assert run(replay(file)) == 3
+    told = capsys.readouterr()
+    assert "1 contacts" in told.out
+    assert "damaged: line 18" in told.err
+    assert file.read_bytes() == whole[: int(0.9 * len(whole))]
+
+
+def test_a_wrong_model_is_not_taken_for_contacts_without_a_word(
+    file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    constants = ["--torque-constants", "0.5"]
+    assert run(replay(file, *constants)) == 0
+    assert "errors of the model" in capsys.readouterr().err
+
+
+def test_ctrl_c_keeps_what_is_done(
+    file: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    module = import_module("contactsense.cli.replay")
+    original = module.replay
+
+    def stopped(log: cs.Log, monitor: cs.ContactMonitor, on_progress: object) -> cs.Replay:
+        del on_progress
+
+        def stop(done: int, rows: int) -> None:
+            raise KeyboardInterrupt
+
+        monkeypatch.setattr(import_module("contactsense.offline.replay"), "_CHUNK", 1500)
+        result: cs.Replay = original(log, monitor, on_progress=stop)
+        return result
+
+    monkeypatch.setattr(module, "replay", stopped)
+    assert run(replay(file)) == 130
+    assert "1 contacts in 1.5 s, until it was interrupted" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        (["--column", "position"], "column: must be NAME=VALUE"),
+        (["--column", "nosuch=a"], "columns: there is no 'nosuch'"),
+        (["--unit", "position=m"], "units: there is no 'position'"),
+        (["--torque-constants", "a"], "torque-constants: must be a number"),
+        (["--calibration", "nosuch.yaml"], "path: cannot read"),
+    ],
+)
+def test_an_error_is_a_line(
+    file: Path, more: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(replay(file, *more)) == 2
+    told = capsys.readouterr()
+    assert message in told.err
+    assert "Traceback" not in told.err
+
+
+@pytest.fixture(scope="module")
+def moving(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Half a minute of motion with friction, bias and noise."""
+    robot, rng = arm(), np.random.default_rng(5)
+    motion = cs.exciting_motion(robot, 25.0, dt=0.01)
+    rows = zip(motion.q, motion.v, motion.a, strict=True)
+    tau = np.array([robot.inverse_dynamics(*row) for row in rows])
+    tau += 0.4 + 0.8 * np.tanh(motion.v / 0.02) + rng.normal(0.0, 0.05, tau.shape)
+    log = cs.Log(motion.time, motion.q, motion.v, tau)
+    return write_csv(tmp_path_factory.mktemp("logs") / "moving.csv", columns(log))
+
+
+def test_calibrate_writes_a_file_that_replay_uses(
+    moving: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out, png = tmp_path / "arm.yaml", tmp_path / "arm.png"
+    assert run(["calibrate", str(moving), "--robot", "iiwa14", "--out", str(out), "--png", str(png)]) == 0
+    told = capsys.readouterr()
+    assert "Coulomb" in told.out
+    calibration = cs.Calibration.load(out)
+    np.testing.assert_allclose(calibration.friction.coulomb, 0.8, atol=0.1)
+    assert png.stat().st_size > 20_000
+    assert run(["replay", str(moving), "--robot", "iiwa14", "--calibration", str(out), "--json"]) == 0
+    assert capsys.readouterr().out == ""
+
+
+def test_calibrate_as_json_shows_what_is_left(
+    moving: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "arm.yaml"
+    assert run(["calibrate", str(moving), "--robot", "iiwa14", "--out", str(out), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert np.all(np.array(told["residual_after"]) < 0.5 * np.array(told["residual_before"]))
+
+
+def test_diagnose_recognises_torques_of_the_opposite_sign(
+    moving: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    png = tmp_path / "arm.png"
+    arguments = ["diagnose", str(moving), "--robot", "iiwa14"]
+    assert run([*arguments, "--torque-constants=-1", "--json", "--png", str(png)]) == 0
+    findings = json.loads(capsys.readouterr().out)
+    assert findings[0]["code"] == "sign"
+    assert png.stat().st_size > 20_000
+    assert run([*arguments, "--torque-constants", "-1"]) == 0
+    assert capsys.readouterr().out.startswith("1. major, sign: ")
+
+
+@pytest.mark.shared
+@pytest.mark.parametrize(
+    ("log", "robot", "more"),
+    [
+        ("panda_free", "panda", ["--lock", "panda_finger*"]),
+        ("ur10_free", "ur10", []),
+        ("ur3e_rtde/L1L2.csv.gz", "ur3", ["--torque-constants", "11.9,11.9,9.9,5.9,5.9,5.9"]),
+    ],
+)
+def test_public_logs_need_one_command(
+    log: str, robot: str, more: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = EXAMPLE_SHARE / "example-robot-data" / "robots"
+    urdf = {"panda": PANDA.path, "ur10": folder / "ur_description/urdf/ur10_robot.urdf"}
+    urdf["ur3"] = folder / "ur_description/urdf/ur3_robot.urdf"
+    if not urdf[robot].exists():
+        pytest.skip("example-robot-data is not installed")
+    described = ["--robot", str(urdf[robot]), "--package-dir", str(EXAMPLE_SHARE)]
+    assert run(["diagnose", str(SHARED / "real" / log), *described, *more]) == 0
+    assert "Traceback" not in capsys.readouterr().err
+
+
+@pytest.mark.shared
+def test_the_touches_of_a_public_log_are_found(capsys: pytest.CaptureFixture[str]) -> None:
+    PANDA.require()
+    described = ["--robot", str(PANDA.path), "--package-dir", str(EXAMPLE_SHARE), "--lock", "panda_finger*"]
+    log = str(SHARED / "real/franka_touch/a4.csv.gz")
+    assert run(["replay", log, *described, "--threshold", "1", "--bias-time", "1", "--json"]) == 0
+    contacts = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert 13 <= len(contacts) <= 17
