@@ -24,10 +24,7 @@ def read(path: Path) -> Recording:
         InputError: the file cannot be read, is broken or too large, or has no numbers.
     """
     data, broken = unpack.contents(path)
-    if data.startswith(_ARRAY):
-        recording = _single(path, data)
-    else:
-        recording = _archive(path, data)
+    recording = _single(path, data) if data.startswith(_ARRAY) else _archive(path, data)
     if not recording.tables:
         why = "; ".join(recording.left_out + recording.damage)
         raise InputError(f"path: {path} has no column of numbers ({why})")
