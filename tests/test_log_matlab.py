@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mutations import check_broken, cuts, outcome
+from mutations import CASES, check_broken, cuts, outcome
 
 from contactsense.errors import InputError
 from contactsense.log.formats import matlab
@@ -187,9 +187,31 @@ def test_an_absent_file() -> None:
 def test_cut_files_are_refused(file: Path) -> None:
     data = made(file, robot)
     for cut in cuts(data, seed=2):
-        assert isinstance(outcome(matlab.read, file, data[:cut]), InputError)
+        error = outcome(matlab.read, file, data[:cut])
+        assert isinstance(error, InputError)
+        assert cut < 600 or f"it is cut: {cut} of {len(data)} bytes" in str(error)
+
+
+@pytest.mark.parametrize(
+    ("program", "message"),
+    [
+        ("import os; os.abort()", "it is broken: HDF5 ended with -6"),
+        ("while True: pass", "HDF5 came to no end in 1 s"),
+        ("raise RuntimeError('why')", "it is broken: HDF5 ended with 1 RuntimeError: why"),
+    ],
+)
+def test_what_ends_hdf5_does_not_end_this_process(
+    file: Path, program: str, message: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made(file, robot)
+    (file.parent / "program.py").write_text(program)
+    monkeypatch.setattr(matlab, "_PROGRAM", file.parent / "program.py")
+    monkeypatch.setattr(matlab, "_PATIENCE", 1 if "while" in program else 60)
+    with pytest.raises(InputError, match=message):
+        matlab.read(file)
 
 
 def test_broken_files(file: Path) -> None:
     whole = [made(file, robot), made(file, robot, b""), made(file, lambda root: put(root, "q", ROWS))]
-    check_broken(matlab.read, file, whole, seed=3)
+    # A tenth, as each starts a program.
+    check_broken(matlab.read, file, whole, seed=3, cases=CASES // 10)

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import io
+import json
+import struct
+import subprocess
+import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,20 +19,19 @@ from ..recording import Column, Recording
 from .arrays import flattened, tables
 from .unpack import MOST_BYTES
 
-if TYPE_CHECKING:
-    import h5py
-
 # What stands at the beginning of files of version 5 to 7, and where HDF5 begins in those of 7.3 [B].
 _OLD, _BEGINNINGS = b"MATLAB 5.0 MAT-file", (0, 512)
 _HDF5 = b"\x89HDF\r\n\x1a\n"
-# Deflate makes no more than this many bytes of one; an array that claims more is not in the file.
-_MOST_UNPACKED = 1100
-# Groups inside groups: structures of MATLAB are seldom more than four deep.
-_DEEPEST = 32
-# Filters that HDF5 itself has: deflate, shuffle, a checksum. For others it would load programs.
-_FILTERS = {1, 2, 3}
-# Where MATLAB keeps what others refer to: cells, objects.
-_HIDDEN = ("#refs#", "#subsystem#")
+# Bytes of the block that begins so, and where in it the length of the file is, by the block's version [B].
+_SUPERBLOCK, _LENGTH_AT = 52, {0: 40, 1: 44, 2: 28, 3: 28}
+# Starts the program that reads with the modules that this process would find, and no others.
+_START = (
+    "import runpy, sys; "
+    "sys.path[:] = sys.argv[1].split('\\n'); runpy.run_path(sys.argv[2], run_name='__main__')"
+)
+_PROGRAM = Path(__file__).with_name("hdf5_arrays.py")
+# It has this time [s]: the largest files take minutes, and broken ones can send HDF5 round in circles.
+_PATIENCE = 600
 
 
 def read(path: Path) -> Recording:
@@ -43,17 +46,12 @@ def read(path: Path) -> Recording:
         MissingExtraError: h5py is not installed.
     """
     require("log", "h5py")
-    import h5py
-
-    left_out: list[str] = []
     try:
         _check_beginning(path)
-        with h5py.File(path, "r") as file:
-            arrays = dict(_Walk(path.stat().st_size, left_out).arrays(file, "", _DEEPEST))
-        columns = _columns(arrays, left_out)
-    # All that h5py raises of a broken file, and what is found wrong here.
-    except (OSError, ValueError, KeyError, RuntimeError, TypeError, OverflowError, MemoryError) as error:
+        arrays, left_out = _arrays(path)
+    except (OSError, ValueError, MemoryError) as error:
         raise InputError(f"path: cannot read {path}: {error}") from error
+    columns = _columns(arrays, left_out)
     if not columns:
         raise InputError(f"path: {path} has no column of numbers")
     return Recording(tables(path.stem, columns), tuple(left_out))
@@ -61,71 +59,41 @@ def read(path: Path) -> Recording:
 
 def _check_beginning(path: Path) -> None:
     with path.open("rb") as file:
-        start = file.read(_BEGINNINGS[-1] + len(_HDF5))
+        start = file.read(_BEGINNINGS[-1] + _SUPERBLOCK)
     if start.startswith(_OLD):
         raise InputError("it is of an older version of MATLAB's format; save it with -v7.3")
-    if not any(start[begin:].startswith(_HDF5) for begin in _BEGINNINGS):
+    begin = next((begin for begin in _BEGINNINGS if start[begin:].startswith(_HDF5)), None)
+    if begin is None:
         raise InputError("it is no file of MATLAB 7.3")
+    block = start[begin:].ljust(_SUPERBLOCK, b"\0")
+    (length,) = struct.unpack_from("<Q", block, _LENGTH_AT.get(block[len(_HDF5)], _LENGTH_AT[0]))
+    if path.stat().st_size < length:
+        raise InputError(f"it is cut: {path.stat().st_size} of {length} bytes are there; HDF5 needs all")
 
 
-class _Walk:
-    """Goes through a file's groups; takes arrays of numbers that are in the file itself."""
-
-    def __init__(self, size: int, left_out: list[str]) -> None:
-        self._size, self._left_out = size, left_out
-        self._memory = MOST_BYTES
-        self._seen: set[int] = set()
-
-    def arrays(self, group: h5py.Group, prefix: str, depth: int) -> Iterator[tuple[str, NDArray[Any]]]:
-        """All arrays in a group and those inside, their axes in MATLAB's order."""
-        import h5py
-
-        address = h5py.h5o.get_info(group.id).addr
-        if depth == 0 or address in self._seen:
-            raise InputError(f"{prefix}: groups are in a circle, or more than {_DEEPEST} deep")
-        self._seen.add(address)
-        for key in group:
-            name = prefix + key
-            if key in _HIDDEN:
-                continue
-            link = group.get(key, getlink=True)
-            if isinstance(link, h5py.ExternalLink):
-                raise InputError(f"{name}: refers to another file, which is not opened")
-            if not isinstance(link, h5py.HardLink):
-                self._left_out.append(f"{name}: refers to another place")
-                continue
-            node = group[key]
-            if isinstance(node, h5py.Group):
-                yield from self.arrays(node, f"{name}.", depth - 1)
-            elif isinstance(node, h5py.Dataset):
-                if why := self._why_not(node, name):
-                    self._left_out.append(f"{name}: {why}")
-                else:
-                    yield name, node[()].T
-
-    def _why_not(self, data: h5py.Dataset, name: str) -> str:
-        """Why a dataset is no array of numbers; empty if it is one, of a size that can be in the file."""
-        if data.external or data.is_virtual:
-            raise InputError(f"{name}: its numbers are in another file, which is not opened")
-        if data.shape is None or data.size == 0 or "MATLAB_empty" in data.attrs:
-            return "empty"
-        kind = data.attrs.get("MATLAB_class", b"")
-        if kind in (b"char", b"cell", b"string"):
-            return f"of MATLAB's class {kind.decode()}"
-        if data.dtype.hasobject or data.dtype.kind not in "biufcV":
-            return f"of type {data.dtype}"
-        settings = data.id.get_create_plist()
-        filters = {settings.get_filter(k)[0] for k in range(settings.get_nfilters())}
-        if filters - _FILTERS:
-            return f"packed by filters with the numbers {sorted(filters - _FILTERS)}"
-        stored = data.id.get_storage_size() * (_MOST_UNPACKED if filters else 1)
-        needed = data.size * data.dtype.itemsize
-        if needed > min(stored, self._size * _MOST_UNPACKED):
-            return f"its {needed} bytes are not in the file"
-        self._memory -= needed
-        if self._memory < 0:
-            raise InputError(f"{name}: the file needs more than {MOST_BYTES >> 20} MiB of memory; split it")
-        return ""
+def _arrays(path: Path) -> tuple[dict[str, NDArray[Any]], list[str]]:
+    """All arrays of a file, their axes in MATLAB's order, and what it has besides."""
+    command = [sys.executable, "-I", "-c", _START, "\n".join(sys.path), str(_PROGRAM)]
+    command += [str(path.absolute()), str(MOST_BYTES)]
+    try:
+        done = subprocess.run(command, capture_output=True, timeout=_PATIENCE, check=False)
+    except subprocess.TimeoutExpired:
+        raise InputError(f"it is broken: HDF5 came to no end in {_PATIENCE} s") from None
+    if done.returncode:
+        last = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]
+        raise InputError(f"it is broken: HDF5 ended with {done.returncode} {last}".rstrip())
+    arrays: dict[str, NDArray[Any]] = {}
+    left_out = []
+    stream = io.BytesIO(done.stdout)
+    while line := stream.readline():
+        ((key, value),) = json.loads(line).items()
+        if key == "error":
+            raise InputError(value)
+        if key == "array":
+            arrays[value] = np.lib.format.read_array(stream, allow_pickle=False).T
+        else:
+            left_out.append(value)
+    return arrays, left_out
 
 
 def _columns(arrays: dict[str, NDArray[Any]], left_out: list[str]) -> dict[str, Column]:
