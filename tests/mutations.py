@@ -48,10 +48,12 @@ def outcome(read: Callable[[Path], Recording], path: Path, data: bytes) -> Recor
     return recording
 
 
-def check_broken(read: Callable[[Path], Recording], path: Path, whole: list[bytes], seed: int) -> None:
-    """Gives the reader `CASES` broken files made from whole ones; at least one of each outcome must occur."""
+def check_broken(
+    read: Callable[[Path], Recording], path: Path, whole: list[bytes], seed: int, cases: int = CASES
+) -> None:
+    """Gives the reader broken files made from whole ones; at least one of each outcome must occur."""
     random = np.random.default_rng(seed)
-    kinds = [type(outcome(read, path, broken(whole[k % len(whole)], random))) for k in range(CASES)]
+    kinds = [type(outcome(read, path, broken(whole[k % len(whole)], random))) for k in range(cases)]
     assert set(kinds) == {Recording, InputError}
 
 

@@ -22,7 +22,7 @@ def array_of(data: bytes) -> tuple[NDArray[Any], str]:
     """The array, and what is missing of it (empty if nothing is): all whole rows are given.
 
     Raises:
-        BadArrayError: it has objects of Python, its header is broken or asks for more than there is, and
+        BadArrayError: it has objects of Python, its header is broken, or asks for more than there is and
             there is no whole row.
     """
     shape, by_columns, dtype, start = _header(data)

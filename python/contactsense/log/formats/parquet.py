@@ -42,7 +42,7 @@ def read(path: Path) -> Recording:
             file.seek(-min(len(_MAGIC), file.seek(0, 2)), 2)
             end = file.read()
         if start == _MAGIC != end:
-            raise InputError(f"path: {path} is cut: what it holds is described at its end, which is missing")
+            raise InputError("it is cut: what it holds is described at its end, which is missing")
         columns, left_out = _columns(path)
     except (pa.ArrowException, OSError, ValueError, MemoryError) as error:
         raise InputError(f"path: cannot read {path}: {error}") from error
@@ -72,7 +72,7 @@ def _columns(path: Path) -> tuple[dict[str, Column], list[str]]:
             batches.append(batch)
             held += batch.nbytes
         if max(need, held) > MOST_BYTES:
-            raise InputError(f"path: {path} needs more than {MOST_BYTES >> 20} MiB of memory; split it")
+            raise InputError(f"it needs more than {MOST_BYTES >> 20} MiB of memory; split it")
         table = pa.Table.from_batches(batches, file.schema_arrow)
     columns: dict[str, Column] = {}
     left_out: list[str] = []

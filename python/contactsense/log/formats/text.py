@@ -107,7 +107,10 @@ def _without_cut_row(data: bytes, dialect: Dialect, broken: bool) -> tuple[bytes
 def _without_bad_lines(data: bytes, dialect: Dialect) -> tuple[bytes, int]:
     """Lines as the parser needs them, and how many it cannot read: too long, or with a quote left open."""
     if dialect.delimiter == BLANKS:
-        data = re.sub(rb"(?m)^[ \t]+|[ \t]+$", b"", re.sub(rb"[ \t]+", b" ", data))
+        data = data.replace(b"\t", b" ")
+        while b"  " in data:
+            data = data.replace(b"  ", b" ")
+        data = data.replace(b"\n ", b"\n").replace(b" \n", b"\n").strip(b" ")
     if b'"' not in data and not _has_long_line(data):
         return data, 0
     sign = re.escape(dialect.delimiter.encode())

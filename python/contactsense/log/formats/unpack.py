@@ -33,12 +33,12 @@ def contents(path: Path) -> tuple[bytes, str]:
         with path.open("rb") as file:
             start = file.read(len(_XZ))
             file.seek(0)
-            return _gathered(path, _pieces(file, start))
-    except (OSError, ValueError) as error:  # no file; a name that cannot be one
+            return _gathered(_pieces(file, start))
+    except (OSError, ValueError) as error:  # no file; a name that cannot be one; too large
         raise InputError(f"path: cannot read {path}: {error}") from error
 
 
-def _gathered(path: Path, pieces: Iterator[bytes]) -> tuple[bytes, str]:
+def _gathered(pieces: Iterator[bytes]) -> tuple[bytes, str]:
     gathered: list[bytes] = []
     size, damage = 0, ""
     try:
@@ -46,11 +46,11 @@ def _gathered(path: Path, pieces: Iterator[bytes]) -> tuple[bytes, str]:
             gathered.append(piece)
             size += len(piece)
             if size > MOST_BYTES:
-                raise InputError(f"path: {path} has more than {MOST_BYTES >> 20} MiB of text; split it")
+                raise InputError(f"it has more than {MOST_BYTES >> 20} MiB; split it")
     except (EOFError, zlib.error, lzma.LZMAError, _BrokenError) as error:
         damage = f"the compressed file is broken or cut ({error}): {size} bytes could be unpacked"
     except MemoryError as error:
-        raise InputError(f"path: {path} does not fit into memory") from error
+        raise InputError("it does not fit into memory") from error
     return b"".join(gathered), damage
 
 
