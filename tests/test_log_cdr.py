@@ -2,7 +2,17 @@
 
 import numpy as np
 import pytest
-from bag_files import ARM, CUSTOM, JOINT_STATE, STORES, flat_numbers, joint_state, random_message
+from bag_files import (
+    ARM,
+    CUSTOM,
+    JOINT_STATE,
+    MUTATIONS,
+    STORES,
+    flat_numbers,
+    joint_state,
+    mutated,
+    random_message,
+)
 
 from contactsense.log.formats.layout import LayoutError
 from contactsense.log.formats.messages import types_of
@@ -57,6 +67,31 @@ def test_joint_states_are_named_by_joint(encoding):
     assert found["header.stamp"] == 5 + 7e-9
     assert found["position[arm_joint3]"] == found["velocity[arm_joint3]"] == 2.0
     assert not [name for name in found if name.startswith("effort")]
+
+
+@pytest.mark.parametrize("encoding", ["cdr", "ros1"])
+def test_mutated_messages_are_refused_or_read(encoding):
+    rng, read = np.random.default_rng(31), 0
+    for i in range(MUTATIONS):
+        kind = KINDS[i % len(KINDS)]
+        definition = CUSTOM if kind.startswith("my_msgs") else ""
+        data = encoded(random_message(rng, encoding, kind), kind, "ros1" if encoding == "ros1" else "little")
+        try:
+            read_one(mutated(rng, data or b"\0"), kind, encoding, definition)
+            read += 1
+        except LayoutError:
+            continue
+    assert MUTATIONS // 20 < read < MUTATIONS
+
+
+def test_mutated_definitions_give_types_or_none():
+    rng = np.random.default_rng(37)
+    for _ in range(MUTATIONS):
+        types = types_of("my_msgs/msg/State", "cdr", mutated(rng, CUSTOM.encode()).decode("utf-8", "replace"))
+        try:
+            Walk(b"\0\1" + bytes(400), types or {}, "cdr").layout("my_msgs/msg/State")
+        except LayoutError:
+            continue
 
 
 def test_names_that_repeat_name_nothing():
