@@ -13,6 +13,7 @@ from bag_files import (
     mutated,
     random_message,
 )
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from contactsense.log.formats.layout import LayoutError
 from contactsense.log.formats.messages import types_of
@@ -112,6 +113,32 @@ def test_interfaces_and_joints_name_dynamic_states():
         "interface_values[a].values[effort]": 2.0,
         "interface_values[b].values[position]": 3.0,
     }
+
+
+NESTED = """std_msgs/Header header
+sensor_msgs/JointState measured_joint_state
+sensor_msgs/JointState tau_ext_hat_filtered
+geometry_msgs/WrenchStamped o_f_ext_hat_k
+float64[2] plain
+"""
+
+
+def test_joints_name_states_within_states():
+    """As in franka_msgs/FrankaRobotState; an array beside them is not named by their joints."""
+    kind, types = "my_msgs/msg/RobotState", types_of("my_msgs/msg/RobotState", "cdr", NESTED)
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    store.register(get_types_from_msg(NESTED, kind))
+    rng, of = np.random.default_rng(43), STORES["cdr"].types
+    state = of[JOINT_STATE](
+        random_message(rng, "cdr", "std_msgs/msg/Header"), ["a", "b"], *[np.arange(2.0)] * 3
+    )
+    wrench = random_message(rng, "cdr", "geometry_msgs/msg/WrenchStamped")
+    message = store.types[kind](state.header, state, state, wrench, np.array([5.0, 6.0]))
+    assert types is not None
+    found = read_one(bytes(store.serialize_cdr(message, kind)), kind, "cdr", NESTED)
+    assert found["measured_joint_state.position[b]"] == found["tau_ext_hat_filtered.effort[b]"] == 1.0
+    assert found["o_f_ext_hat_k.wrench.force.x"] == wrench.wrench.force.x
+    assert found["plain[1]"] == 6.0
 
 
 def test_long_arrays_give_no_columns():
