@@ -64,6 +64,22 @@ def test_many_topics_and_odd_times(tmp_path):
     assert [t.received.item() for t in found.tables] == [time * 1e-9 for _, _, time, _ in given]
 
 
+def test_rows_that_wait_in_a_journal_are_told_of(tmp_path):
+    """As a recorder leaves them that was killed."""
+    path = write_sqlite(tmp_path / "a.db3", messages("cdr"))
+    base = sqlite3.connect(path)
+    base.execute("PRAGMA journal_mode=WAL")
+    base.execute("UPDATE messages SET timestamp = timestamp + 1")
+    base.commit()
+    found = rosbag2_sqlite.read(path)
+    base.close()
+    assert rows_of(found) == 80
+    rows = sum(t.rows for t in found.tables)
+    assert found.damage == (
+        f"a.db3: the rows that wait in a.db3-wal are not read; {rows} messages were read before",
+    )
+
+
 def test_deleted_rows_do_not_come_back(tmp_path):
     path = write_sqlite(tmp_path / "a.db3", messages("cdr"), PAGE)
     with sqlite3.connect(path) as base:
