@@ -16,7 +16,7 @@ from bag_files import (
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from contactsense.log.formats.layout import LayoutError
-from contactsense.log.formats.messages import types_of
+from contactsense.log.formats.messages import default_wanted, types_of
 from contactsense.log.formats.walk import MAX_ELEMENTS, Walk
 
 KINDS = [
@@ -175,6 +175,26 @@ def test_a_hostile_definition_is_refused(definition):
     kind = "my_msgs/msg/State"
     with pytest.raises(LayoutError):
         Walk(b"\0\1\0\0" + b"\1\0\0\0" * 1000, types_of(kind, "cdr", definition), "cdr").layout(kind)
+
+
+def test_a_definition_that_branches_without_end_takes_no_time():
+    parts = [f"MSG: my_msgs/T{i}\nT{i + 1} a\nT{i + 1} b\n" for i in range(31)] + [
+        "MSG: my_msgs/T31\nint8 a\n"
+    ]
+    text = "T0 a\n" + "".join("=" * 80 + "\n" + part for part in parts)
+    types = types_of("my_msgs/msg/State", "cdr", text)
+    assert "my_msgs/msg/T31" in types
+    assert not default_wanted("my_msgs/msg/State", types)
+    with pytest.raises(LayoutError):
+        Walk(b"\0\1\0\0" + bytes(10**6), types, "cdr").layout("my_msgs/msg/State")
+
+
+def test_a_long_name_is_refused():
+    text = "Part[2000] " + "a" * 2000 + "\n" + "=" * 80 + "\nMSG: my_msgs/Part\nint8 b\n"
+    with pytest.raises(LayoutError, match="too long"):
+        Walk(b"\0\1\0\0" + bytes(2000), types_of("my_msgs/msg/State", "cdr", text), "cdr").layout(
+            "my_msgs/msg/State"
+        )
 
 
 def test_a_broken_definition_gives_no_type():
