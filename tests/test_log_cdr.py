@@ -2,10 +2,21 @@
 
 import numpy as np
 import pytest
-from bag_files import ARM, CUSTOM, JOINT_STATE, STORES, flat_numbers, joint_state, random_message
+from bag_files import (
+    ARM,
+    CUSTOM,
+    JOINT_STATE,
+    MUTATIONS,
+    STORES,
+    flat_numbers,
+    joint_state,
+    mutated,
+    random_message,
+)
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from contactsense.log.formats.layout import LayoutError
-from contactsense.log.formats.messages import types_of
+from contactsense.log.formats.messages import default_wanted, types_of
 from contactsense.log.formats.walk import MAX_ELEMENTS, Walk
 
 KINDS = [
@@ -59,6 +70,31 @@ def test_joint_states_are_named_by_joint(encoding):
     assert not [name for name in found if name.startswith("effort")]
 
 
+@pytest.mark.parametrize("encoding", ["cdr", "ros1"])
+def test_mutated_messages_are_refused_or_read(encoding):
+    rng, read = np.random.default_rng(31), 0
+    for i in range(MUTATIONS):
+        kind = KINDS[i % len(KINDS)]
+        definition = CUSTOM if kind.startswith("my_msgs") else ""
+        data = encoded(random_message(rng, encoding, kind), kind, "ros1" if encoding == "ros1" else "little")
+        try:
+            read_one(mutated(rng, data or b"\0"), kind, encoding, definition)
+            read += 1
+        except LayoutError:
+            continue
+    assert MUTATIONS // 20 < read < MUTATIONS
+
+
+def test_mutated_definitions_give_types_or_none():
+    rng = np.random.default_rng(37)
+    for _ in range(MUTATIONS):
+        types = types_of("my_msgs/msg/State", "cdr", mutated(rng, CUSTOM.encode()).decode("utf-8", "replace"))
+        try:
+            Walk(b"\0\1" + bytes(400), types or {}, "cdr").layout("my_msgs/msg/State")
+        except LayoutError:
+            continue
+
+
 def test_names_that_repeat_name_nothing():
     data = joint_state("cdr", ("a", "a"), 0, [1.0, 2.0])
     assert read_one(data, JOINT_STATE, "cdr")["position[1]"] == 2.0
@@ -77,6 +113,32 @@ def test_interfaces_and_joints_name_dynamic_states():
         "interface_values[a].values[effort]": 2.0,
         "interface_values[b].values[position]": 3.0,
     }
+
+
+NESTED = """std_msgs/Header header
+sensor_msgs/JointState measured_joint_state
+sensor_msgs/JointState tau_ext_hat_filtered
+geometry_msgs/WrenchStamped o_f_ext_hat_k
+float64[2] plain
+"""
+
+
+def test_joints_name_states_within_states():
+    """As in franka_msgs/FrankaRobotState; an array beside them is not named by their joints."""
+    kind, types = "my_msgs/msg/RobotState", types_of("my_msgs/msg/RobotState", "cdr", NESTED)
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    store.register(get_types_from_msg(NESTED, kind))
+    rng, of = np.random.default_rng(43), STORES["cdr"].types
+    state = of[JOINT_STATE](
+        random_message(rng, "cdr", "std_msgs/msg/Header"), ["a", "b"], *[np.arange(2.0)] * 3
+    )
+    wrench = random_message(rng, "cdr", "geometry_msgs/msg/WrenchStamped")
+    message = store.types[kind](state.header, state, state, wrench, np.array([5.0, 6.0]))
+    assert types is not None
+    found = read_one(bytes(store.serialize_cdr(message, kind)), kind, "cdr", NESTED)
+    assert found["measured_joint_state.position[b]"] == found["tau_ext_hat_filtered.effort[b]"] == 1.0
+    assert found["o_f_ext_hat_k.wrench.force.x"] == wrench.wrench.force.x
+    assert found["plain[1]"] == 6.0
 
 
 def test_long_arrays_give_no_columns():
@@ -113,6 +175,26 @@ def test_a_hostile_definition_is_refused(definition):
     kind = "my_msgs/msg/State"
     with pytest.raises(LayoutError):
         Walk(b"\0\1\0\0" + b"\1\0\0\0" * 1000, types_of(kind, "cdr", definition), "cdr").layout(kind)
+
+
+def test_a_definition_that_branches_without_end_takes_no_time():
+    parts = [f"MSG: my_msgs/T{i}\nT{i + 1} a\nT{i + 1} b\n" for i in range(31)] + [
+        "MSG: my_msgs/T31\nint8 a\n"
+    ]
+    text = "T0 a\n" + "".join("=" * 80 + "\n" + part for part in parts)
+    types = types_of("my_msgs/msg/State", "cdr", text)
+    assert "my_msgs/msg/T31" in types
+    assert not default_wanted("my_msgs/msg/State", types)
+    with pytest.raises(LayoutError):
+        Walk(b"\0\1\0\0" + bytes(10**6), types, "cdr").layout("my_msgs/msg/State")
+
+
+def test_a_long_name_is_refused():
+    text = "Part[2000] " + "a" * 2000 + "\n" + "=" * 80 + "\nMSG: my_msgs/Part\nint8 b\n"
+    with pytest.raises(LayoutError, match="too long"):
+        Walk(b"\0\1\0\0" + bytes(2000), types_of("my_msgs/msg/State", "cdr", text), "cdr").layout(
+            "my_msgs/msg/State"
+        )
 
 
 def test_a_broken_definition_gives_no_type():

@@ -11,7 +11,7 @@ from mcap.reader import make_reader
 from robots import SHARED
 
 from contactsense import InputError
-from contactsense.log.formats import mcap_file
+from contactsense.log.formats import collect, mcap_file
 from contactsense.log.formats.mcap_records import MAX_CHUNK
 
 REAL = SHARED / "real" / "rosbag2_files"
@@ -66,6 +66,25 @@ def test_joints_in_another_order_are_one_table_in_order_of_reception(tmp_path):
     np.testing.assert_array_equal(found.columns["position[a]"], [99, 98, 97])
     np.testing.assert_array_equal(found.columns["position[b]"], [100, 99, 98])
     np.testing.assert_array_equal(found.received, np.array([10, 20, 30]) * 1e-9)
+
+
+def test_a_topic_of_too_many_shapes_is_read_in_part(tmp_path, monkeypatch):
+    monkeypatch.setattr(collect, "MAX_LAYOUTS", 3)
+    given = [("/j", JOINT_STATE, i, joint_state("cdr", (f"a{i % 5}",), 0, [i])) for i in range(20)]
+    found = mcap_file.read(write_mcap(tmp_path / "a.mcap", given))
+    assert [t.columns[f"position[a{i}]"].tolist() for i, t in enumerate(found.tables)] == [
+        [i, i + 5, i + 10, i + 15] for i in range(3)
+    ]
+    assert found.damage == (f"/j ({JOINT_STATE}): 8 of 20 messages are not read: they have too many shapes",)
+
+
+def test_messages_that_do_not_fit_their_type_are_counted(tmp_path):
+    given = [m for m in messages("cdr") if m[0] == "/joint_states"]
+    given[7:9] = [(*given[7][:3], given[7][3][:-8]), (*given[8][:3], b"")]
+    found = mcap_file.read(write_mcap(tmp_path / "a.mcap", given))
+    assert sum(t.rows for t in found.tables) == 78
+    assert len(found.damage) == 1
+    assert "2 of 80 messages are not read: " in found.damage[0]
 
 
 def complete_messages(data):
@@ -146,17 +165,18 @@ def test_other_files_are_refused(data, tmp_path):
         mcap_file.read(path)
 
 
-@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("form", [*FORMS, "unchecked"])
 def test_mutated_files_end_in_typed_errors(form, tmp_path):
-    data = write_mcap(tmp_path / "a.mcap", messages("cdr", 20), **FORMS[form]).read_bytes()
+    forms = FORMS | {"unchecked": {"chunk_size": 4000, "enable_crcs": False}}
+    data = write_mcap(tmp_path / "a.mcap", messages("cdr", 20), **forms[form]).read_bytes()
     rng, path, read = np.random.default_rng(17), tmp_path / "b.mcap", 0
-    for _ in range(MUTATIONS // len(FORMS)):
+    for _ in range(MUTATIONS // len(forms)):
         path.write_bytes(mutated(rng, data))
         try:
             read += len(mcap_file.read(path, lambda topic, kind: True).tables) > 0
         except InputError:
             continue
-    assert read > MUTATIONS // len(FORMS) // 3
+    assert read > MUTATIONS // len(forms) // 4
 
 
 @pytest.mark.shared

@@ -19,7 +19,7 @@ from bag_files import (
 from robots import SHARED
 
 from contactsense import InputError
-from contactsense.log.formats import rosbag2_folder, rosbag2_sqlite
+from contactsense.log.formats import mcap_file, rosbag2_folder, rosbag2_sqlite
 
 REAL = SHARED / "real"
 PAGE = 512  # the smallest page of SQLite: interior pages come early, and rows flow over into further pages
@@ -41,8 +41,6 @@ def same(first, second):
 @pytest.mark.parametrize("page_size", [512, 4096, 65536])
 @pytest.mark.parametrize("packs", [False, True])
 def test_sqlite_holds_the_same_as_mcap(packs, page_size, tmp_path):
-    from contactsense.log.formats import mcap_file
-
     given = messages("cdr")
     found = rosbag2_sqlite.read(write_sqlite(tmp_path / "a.db3", given, page_size, packs=packs))
     assert found.damage == ()
@@ -64,6 +62,22 @@ def test_many_topics_and_odd_times(tmp_path):
     assert found.damage == ()
     assert [t.columns["position[a]"].item() for t in found.tables] == list(range(300))
     assert [t.received.item() for t in found.tables] == [time * 1e-9 for _, _, time, _ in given]
+
+
+def test_rows_that_wait_in_a_journal_are_told_of(tmp_path):
+    """As a recorder leaves them that was killed."""
+    path = write_sqlite(tmp_path / "a.db3", messages("cdr"))
+    base = sqlite3.connect(path)
+    base.execute("PRAGMA journal_mode=WAL")
+    base.execute("UPDATE messages SET timestamp = timestamp + 1")
+    base.commit()
+    found = rosbag2_sqlite.read(path)
+    base.close()
+    assert rows_of(found) == 80
+    rows = sum(t.rows for t in found.tables)
+    assert found.damage == (
+        f"a.db3: the rows that wait in a.db3-wal are not read; {rows} messages were read before",
+    )
 
 
 def test_deleted_rows_do_not_come_back(tmp_path):
@@ -151,7 +165,7 @@ def test_mutated_files_end_in_typed_errors(page_size, tmp_path):
             read += len(rosbag2_sqlite.read(path, lambda topic, kind: True).tables) > 0
         except InputError:
             continue
-    assert read > MUTATIONS // 4
+    assert read > MUTATIONS // 6
 
 
 def test_other_files_are_refused(tmp_path):
@@ -215,8 +229,6 @@ def test_packed_parts_are_unpacked(ending, tmp_path):
 
 
 def test_a_cut_packed_file_is_read_up_to_the_cut(tmp_path):
-    from contactsense.log.formats import mcap_file
-
     plain = write_mcap(tmp_path / "a.mcap", messages("cdr", 2000), use_chunking=False)
     packed = zstandard.ZstdCompressor(level=1).compress(plain.read_bytes())
     path = tmp_path / "a.mcap.zstd"
@@ -279,6 +291,24 @@ def test_broken_metadata_is_told_of(text, tmp_path):
 def test_a_folder_without_parts_is_refused(tmp_path):
     with pytest.raises(InputError, match="must have parts of a bag"):
         rosbag2_folder.read(tmp_path)
+
+
+def test_mutated_packed_parts_and_lists_end_in_typed_errors(tmp_path):
+    write_folder(tmp_path, ending=".mcap", parts=2)
+    (tmp_path / "bag_1.mcap").unlink()
+    packed = zstandard.ZstdCompressor().compress((tmp_path / "bag_0.mcap").read_bytes())
+    (tmp_path / "bag_0.mcap").unlink()
+    write_metadata(tmp_path, ["bag_0.mcap.zstd"])
+    metadata = (tmp_path / "metadata.yaml").read_bytes()
+    rng, read = np.random.default_rng(41), 0
+    for i in range(MUTATIONS):
+        (tmp_path / "bag_0.mcap.zstd").write_bytes(packed if i % 2 else mutated(rng, packed))
+        (tmp_path / "metadata.yaml").write_bytes(mutated(rng, metadata) if i % 2 else metadata)
+        try:
+            read += len(rosbag2_folder.read(tmp_path).tables) > 0
+        except InputError:
+            continue
+    assert read > MUTATIONS // 3
 
 
 @pytest.mark.shared

@@ -15,7 +15,7 @@ from .walk import Types, Walk
 
 BATCH_BYTES = 2**23  # of messages decoded at once: large enough for numpy, small beside a log
 MAX_LAYOUTS = 1000  # shapes of one topic: each costs a walk; a topic with more is no stream of measurements
-MAX_FAILURES = 1000  # messages of one topic that fit no shape; from then on no new shapes are looked for
+MAX_FAILURES = 200  # messages of one topic that fit no shape; from then on no new shapes are looked for
 MAX_MESSAGE = 2**26  # bytes of one unpacked message
 MAX_BREAKS = 20  # places of damage that are told one by one
 
@@ -68,7 +68,7 @@ class Channel:
         self.data, self.times = [], []
         order = np.arange(self.seen, self.seen + len(data))
         self.seen += len(data)
-        if any(map(is_zstd, data)):
+        if self.encoding == "cdr" and any(map(is_zstd, data)):
             data = [self._unpacked(message) for message in data]
         lengths = np.fromiter(map(len, data), np.int64, len(data))
         for length in np.unique(lengths):

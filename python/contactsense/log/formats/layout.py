@@ -43,7 +43,8 @@ class Layout:
         out = np.empty((len(rows), len(self.names)))
         column = 0
         for part in self.reads:
-            out[:, column : column + part.count] = _numbers(rows, part.offset, part.dtype, part.count)
+            with np.errstate(invalid="ignore"):  # a NaN that signals stays a NaN
+                out[:, column : column + part.count] = _numbers(rows, part.offset, part.dtype, part.count)
             if part.nanoseconds:
                 out[:, column] += _numbers(rows, part.offset + 4, part.nanoseconds, 1)[:, 0] * 1e-9
             column += part.count

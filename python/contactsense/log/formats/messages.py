@@ -66,7 +66,6 @@ COMMON_PACKAGES = frozenset(
 _HEADERS = ("std_msgs/msg/Header", "builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
 MAX_DEFINITION = 2**18  # characters of one definition; franka_msgs/FrankaState has 8,000
 MAX_TYPES = 64  # definitions kept from file to file
-MAX_TYPE_DEPTH = 32  # of types within types; a type within itself has no end
 
 # ros2_control's own state message: its bags before ROS 2 Iron hold no definitions.
 DYNAMIC_JOINT_STATE = """std_msgs/Header header
@@ -95,17 +94,21 @@ def default_wanted(kind: str, types: Types | None) -> bool:
     return types is None or _has_floats(kind, types)
 
 
-def _has_floats(kind: str, types: Types, depth: int = 0) -> bool:
+def _has_floats(kind: str, types: Types) -> bool:
     """Whether a message of this type can hold numbers that are measured."""
-    if depth > MAX_TYPE_DEPTH or kind not in types:
-        return False
-    for _, (node, what) in types[kind][1]:
-        while node not in (BASE, NAME):
-            node, what = what[0]
-        if node == BASE and what[0] in ("float32", "float64"):
-            return True
-        if node == NAME and what not in _HEADERS and _has_floats(what, types, depth + 1):
-            return True
+    waiting, seen = [kind], set(_HEADERS)
+    while waiting:
+        kind = waiting.pop()
+        if kind in seen or kind not in types:
+            continue
+        seen.add(kind)
+        for _, (node, what) in types[kind][1]:
+            while node not in (BASE, NAME):
+                node, what = what[0]
+            if node == NAME:
+                waiting.append(what)
+            elif what[0] in ("float32", "float64"):
+                return True
     return False
 
 

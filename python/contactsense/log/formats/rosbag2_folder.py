@@ -103,10 +103,7 @@ def _ending(name: str) -> str:
     return ending if ending in PARTS else ""
 
 
-def _natural(name: str) -> list[tuple[int, int, str]]:
+def _natural(name: str) -> list[tuple[int, str]]:
     """Numbers within a name by their value: part 10 comes after part 9."""
-    pieces = re.split(r"([0-9]+)", name)
-    return [
-        (len(piece.lstrip("0")), i % 2, piece.lstrip("0") if i % 2 else piece) if i % 2 else (0, 0, piece)
-        for i, piece in enumerate(pieces)
-    ]
+    pieces = re.split(r"0*([0-9]+)", name)  # every second one is a number
+    return [(len(piece) if i % 2 else 0, piece) for i, piece in enumerate(pieces)]

@@ -29,6 +29,8 @@ class Database:
         self.usable = self.page_size - data[20]
         if self.usable < 480:
             raise PageError("no head of SQLite")
+        # Rows are read at most twice; rows that share bytes would have no end.
+        self.left = 2 * len(data)
         self.pages = -(-len(data) // self.page_size)
         said = int.from_bytes(data[28:32], "big")
         self.is_cut = len(data) % self.page_size != 0 or (said > self.pages and data[24:28] == data[92:96])
@@ -75,12 +77,15 @@ class Database:
             row, at = varint(page, at)
         except IndexError:
             raise PageError("a row begins outside its page") from None
+        self.left -= size
+        if self.left < 0:
+            raise PageError("the rows are larger than the file")
         if size <= self.usable - 35:
             if at + size > len(page):
                 raise PageError("a row leaves its page")
             return row, page[at : at + size]
-        if size > min(MAX_PAYLOAD, len(self.data)):
-            raise PageError("a row is larger than the file")
+        if size > MAX_PAYLOAD:
+            raise PageError("a row is too large")
         least = (self.usable - 12) * 32 // 255 - 23
         local = least + (size - least) % (self.usable - 4)
         local = local if local <= self.usable - 35 else least

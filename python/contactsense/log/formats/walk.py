@@ -33,7 +33,8 @@ LABELS = frozenset({"name", "names", "joint_names", "interface_names"})
 FILLER = "structure_needs_at_least_one_member"
 MAX_COLUMNS = 2048  # of one message: more is no state of a robot, and each costs 8 bytes a message
 MAX_ELEMENTS = 512  # of one array of numbers; longer ones are pictures or clouds, and give no columns
-MAX_STEPS = 20_000  # fields visited in one message, so that a hostile one cannot hold the reader up
+MAX_STEPS = 5_000  # fields visited in one message, so that a hostile one cannot hold the reader up
+MAX_NAME = 1000  # characters of a field's name with those it is within, which each of its columns repeats
 MAX_DEPTH = 32  # of types within types; a type within itself has no end
 
 
@@ -120,6 +121,8 @@ class Walk:
         self.steps += 1
         if self.steps > MAX_STEPS:
             raise LayoutError("it has too many fields")
+        if len(path) > MAX_NAME:
+            raise LayoutError("the name of a field in it is too long")
         node, what = int(description[0]), description[1]
         if node == NAME:
             self._message(what, path, labels, depth + 1)
