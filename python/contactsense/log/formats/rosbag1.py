@@ -10,8 +10,8 @@ from ..._extras import require
 from ...errors import InputError
 from ..recording import Recording
 from .collect import BATCH_BYTES, Channel, Collector
+from .mapping import UnpackError, mapped, unpack_bz2, unpack_lz4
 from .messages import IsWanted
-from .unpack import UnpackError, mapped, unpack_bz2, unpack_lz4
 
 MAGIC = b"#ROSBAG V2.0\n"
 MESSAGE, BAG, CHUNK, CONNECTION = 0x02, 0x03, 0x05, 0x07
