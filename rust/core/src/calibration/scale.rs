@@ -14,7 +14,7 @@ const LEAST: f64 = 0.1;
 const SIGNIFICANT: f64 = 3.0;
 /// Of neighbouring rows so many err together, as a rule.
 const TOGETHER: f64 = 10.0;
-/// The measured torque, bias, friction and viscous friction.
+/// One of the two torques, bias, friction and viscous friction.
 const COLUMNS: usize = 4;
 /// Any shape: scale is told by motion, not by where it turns round.
 const SHAPE: Shape = Shape { friction: 0, hysteresis: None };
@@ -69,39 +69,53 @@ pub(super) fn torque_scales(
 /// Errors of what a line is fitted over make it flat: of the measured torque over the description's as well as the other way
 /// round. The truth lies between the two slopes, and both must tell that it is not one.
 fn likely(rows: &[Row], joint: usize) -> f64 {
-    let (to_model, from_model) = (slope(rows, joint, false), slope(rows, joint, true));
-    let [Some(forth), Some(back)] = [to_model, from_model] else { return 1.0 };
-    let scale = (forth * back).sqrt().copysign(forth);
-    let agree = forth * back > 0.0 && (forth - 1.0) * (back - 1.0) > 0.0;
-    if !agree || scale == 0.0 || !scale.is_finite() {
-        1.0
-    } else if (scale + 1.0).abs() <= LEAST {
+    let (Some(forth), Some(inverse)) = (Slope::new(rows, joint, false), Slope::new(rows, joint, true)) else {
+        return 1.0;
+    };
+    let (over_measured, over_model) = (forth.value, 1.0 / inverse.value);
+    let is_same_side = over_measured * over_model > 0.0 && (over_measured - 1.0) * (over_model - 1.0) > 0.0;
+    let scale = (over_measured * over_model).sqrt().copysign(over_measured);
+    if forth.is_one() || inverse.is_one() || !is_same_side || !scale.is_finite() || scale == 0.0 {
+        // Its sign may be certain nevertheless.
+        return if forth.value < -SIGNIFICANT * forth.error { -1.0 } else { 1.0 };
+    }
+    if (scale + 1.0).abs() <= LEAST {
         -1.0
     } else {
         scale
     }
 }
 
-/// That factor by a line over the measured torque, or `inverted`, over the description's; none where it may be one.
-fn slope(rows: &[Row], joint: usize, inverted: bool) -> Option<f64> {
-    let (mut matrix, mut right) =
-        (SMatrix::<f64, COLUMNS, COLUMNS>::zeros(), SVector::<f64, COLUMNS>::zeros());
-    let mut square = 0.0;
-    for row in rows {
-        let own = own_terms(row, joint, SHAPE);
-        let (measured, model) = (torque(row, joint), torque(row, joint) - row.unexplained[joint]);
-        let (over, fitted) = if inverted { (model, measured) } else { (measured, model) };
-        let columns = SVector::from([over, own[BIAS], own[COULOMB], own[VISCOUS]]);
-        matrix += columns * columns.transpose();
-        right += columns * fitted;
-        square += fitted * fitted;
+/// Of a line through a joint's torques: the description's over the measured, or the other way round.
+struct Slope {
+    value: f64,
+    error: f64,
+}
+
+impl Slope {
+    fn new(rows: &[Row], joint: usize, over_model: bool) -> Option<Slope> {
+        let (mut matrix, mut right) =
+            (SMatrix::<f64, COLUMNS, COLUMNS>::zeros(), SVector::<f64, COLUMNS>::zeros());
+        let mut square = 0.0;
+        for row in rows {
+            let own = own_terms(row, joint, SHAPE);
+            let (measured, model) = (torque(row, joint), torque(row, joint) - row.unexplained[joint]);
+            let (over, fitted) = if over_model { (model, measured) } else { (measured, model) };
+            let columns = SVector::from([over, own[BIAS], own[COULOMB], own[VISCOUS]]);
+            matrix += columns * columns.transpose();
+            right += columns * fitted;
+            square += fitted * fitted;
+        }
+        let inverse = matrix.try_inverse()?;
+        let found = inverse * right;
+        let left = (square - found.dot(&right)).max(0.0) / rows.len() as f64;
+        Some(Slope { value: found[0], error: (left * TOGETHER * inverse[(0, 0)]).sqrt() })
     }
-    let inverse = matrix.try_inverse()?;
-    let found = inverse * right;
-    let left = (square - found.dot(&right)).max(0.0) / rows.len() as f64;
-    let error = (left * TOGETHER * inverse[(0, 0)]).sqrt();
-    let differs = (found[0] - 1.0).abs() > f64::max(LEAST, SIGNIFICANT * error);
-    differs.then_some(if inverted { 1.0 / found[0] } else { found[0] })
+
+    /// Whether it may be one.
+    fn is_one(&self) -> bool {
+        (self.value - 1.0).abs() <= f64::max(LEAST, SIGNIFICANT * self.error) || self.value.is_nan()
+    }
 }
 
 /// What held-out blocks leave with these scales, in units of the measured torque.
