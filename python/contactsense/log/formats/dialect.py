@@ -65,6 +65,10 @@ def dialect_of(data: bytes) -> Dialect | None:
     header = split(first, delimiter)
     if _is_header(header, numeric, decimal):
         start, lines = _next_line(data, start), lines + 1
+        # Units stand below the names: as many texts as there are columns, and numbers below them.
+        units = split(_lines(data, start)[0], delimiter)
+        if len(units) == width and any(numeric) and _is_text(units, decimal):
+            start, lines = _next_line(data, start), lines + 1
     else:
         header = split(comment, delimiter) if comment else []
         if len(header) != width or any(is_number(cell, decimal) for cell in header):
@@ -148,9 +152,13 @@ def _mostly_numbers(column: Iterable[str], decimal: str) -> bool:
 
 def _is_header(cells: list[str], numeric: tuple[bool, ...], decimal: str) -> bool:
     """Whether the first line has names: text over numbers, or nothing but text."""
-    texts = [cell.lower() not in MISSING and not is_number(cell, decimal) for cell in cells]
-    over_numbers = any(text and number for text, number in zip(texts, numeric, strict=False))
-    return over_numbers or (bool(texts) and all(texts))
+    over_numbers = (cell for cell, number in zip(cells, numeric, strict=False) if number)
+    return any(_is_text([cell], decimal) for cell in over_numbers) or _is_text(cells, decimal)
+
+
+def _is_text(cells: list[str], decimal: str) -> bool:
+    """Whether no cell has a number or is a missing one."""
+    return bool(cells) and not any(cell.lower() in MISSING or is_number(cell, decimal) for cell in cells)
 
 
 def _names(header: list[str], width: int) -> tuple[str, ...]:
