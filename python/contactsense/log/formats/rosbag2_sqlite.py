@@ -91,23 +91,22 @@ class _File:
                 self._leaf(number, [], rows)
 
     def _leaf(self, number: int, broken: list[int], known: set[int] | None = None) -> None:
-        page = self.database.page(number)
+        page, usable, end = self.database.page(number), self.database.usable, len(self.database.data)
+        channels, rows = self.channels, self.rows
         for at in self.database.cells(page, 100 if number == 1 else 0):
             try:
-                row, topic, time, data = usual_message(page, at, self.database.usable) or self._message(
-                    page, at
-                )
+                row, topic, time, data = usual_message(page, at, usable) or self._message(page, at)
             except PageError:
                 broken.append(number)
                 continue
             self.size += len(data)
-            if self.size > len(self.database.data):  # rows that share bytes would have no end
+            if self.size > end:  # rows that share bytes would have no end
                 broken.append(number)
                 return
             if known is not None and row in known:
                 continue
-            self.rows.append(row)
-            channel = self.channels.get(topic)
+            rows.append(row)
+            channel = channels.get(topic)
             if channel is not None:
                 channel.data.append(data)
                 channel.times.append(time)
