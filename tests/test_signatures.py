@@ -118,6 +118,12 @@ IN_PYTHON = {
     "Calibration.load",
     "Calibration.save",
     "calibrate",
+    "read_log",
+    "replay",
+    "Replay.to_parquet",
+    "Replay.to_json_lines",
+    "Replay.to_mcap",
+    "ReplayedContact.to_dict",
 }
 
 

@@ -17,7 +17,7 @@ from ..log import Log
 class ReplayedContact:
     """One contact from its begin to its end.
 
-    Attributes:
+    Args:
         id: which contact it is: the monitor's number.
         start: time of its first tick, as the log's [s].
         end: time of its last tick [s].
@@ -29,6 +29,21 @@ class ReplayedContact:
         region_radius: of the region that holds 90 % of the posterior [m].
         peak_force: greatest force [N]; NaN where no force is known.
         force: `(3,)`, at that time, world frame, acting on the robot [N].
+
+    Raises:
+        TypeError: an argument is missing.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> q, still = np.tile(robot.neutral(), (600, 1)), np.zeros((600, 7))
+        >>> tau = np.tile(robot.inverse_dynamics(q[0], still[0], still[0]), (600, 1))
+        >>> push = robot.jacobian(q[0], "iiwa_link_3", point=[0.06, 0.0, 0.6])[:3].T @ [-40.0, 0.0, 0.0]
+        >>> tau[200:400] -= push
+        >>> log = cs.Log(np.arange(600) / 1000, q, still, tau)
+        >>> result = cs.replay(log, cs.ContactMonitor(robot, dt=0.001))
+        >>> [contact.id for contact in result.contacts]
+        [0]
     """
 
     id: int
@@ -52,22 +67,37 @@ class ReplayedContact:
 class Replay:
     """A log with what a monitor says of it.
 
-    Attributes:
+    Args:
         log: the log.
         ticks: columns with one value a row that was replayed: `time`, `collision`, `onset`, `significance`,
-            `external_torque` `(n, nv)`; see `ContactReport`.
+            `external_torque` `(n, nv)` [s, Nm]; see `ContactReport`.
         contact_ticks: columns with one value for each contact in each tick: `row`, `time`, `id`, `link`,
             `link_probability`, `located`, `probability`, `point_std`, `region_radius`, `point`,
             `point_local`, `force`; see `Contact`.
         contacts: one for each contact, in the order of their begin.
         interrupted: whether Ctrl-C ended it before the log's end.
+
+    Raises:
+        TypeError: an argument is missing.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> q, still = np.tile(robot.neutral(), (600, 1)), np.zeros((600, 7))
+        >>> tau = np.tile(robot.inverse_dynamics(q[0], still[0], still[0]), (600, 1))
+        >>> push = robot.jacobian(q[0], "iiwa_link_3", point=[0.06, 0.0, 0.6])[:3].T @ [-40.0, 0.0, 0.0]
+        >>> tau[200:400] -= push
+        >>> log = cs.Log(np.arange(600) / 1000, q, still, tau)
+        >>> result = cs.replay(log, cs.ContactMonitor(robot, dt=0.001))
+        >>> result
+        Replay(600 rows, 1 contacts)
     """
 
     log: Log
     ticks: Mapping[str, NDArray[Any]]
     contact_ticks: Mapping[str, NDArray[Any]]
     contacts: tuple[ReplayedContact, ...]
-    interrupted: bool = False
+    interrupted: bool
 
     def __repr__(self) -> str:
         return f"Replay({len(self.ticks['time'])} rows, {len(self.contacts)} contacts)"
@@ -88,6 +118,9 @@ class Replay:
 
     def to_json_lines(self, path: str | os.PathLike[str]) -> None:
         """Writes one JSON object a contact, a line each; see `ReplayedContact.to_dict`.
+
+        Args:
+            path: the file; one that exists is replaced.
 
         Raises:
             OSError: the file cannot be written; none is left half written.
