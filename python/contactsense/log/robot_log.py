@@ -54,7 +54,9 @@ def robot_log(path: str, recording: Recording, robot: _core.Robot, wishes: Wishe
         raise InputError(
             f"path: {np.count_nonzero(known)} rows of {path} are complete; at least 2 are wanted"
         )
-    time, values = axis.time[known], {quantity: rows[known] for quantity, rows in values.items()}
+    time = axis.time
+    if not np.all(known):  # else they need not be copied
+        time, values = time[known], {quantity: rows[known] for quantity, rows in values.items()}
     chosen, mended = [axis.chosen], [*axis.mended, *_faults(known, values)]
     chosen += _to_units(time, values, groups, joints, wishes)
     if VELOCITY not in values:
@@ -143,7 +145,8 @@ def _to_units(
         if quantity == VELOCITY and quantity not in wishes.units:
             unit = velocity_unit(unit, values[quantity], values[POSITION], time, joints.turns)
         factor = np.where(joints.turns if "deg" in unit else np.True_, scale(group, unit), 1.0)
-        values[quantity] = values[quantity] * factor
+        if np.any(factor != 1.0):
+            values[quantity] = values[quantity] * factor
         chosen.append(f"{group.title} [{unit}]")
     if CURRENT in values:
         if wishes.torque_constants is None:

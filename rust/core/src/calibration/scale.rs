@@ -76,8 +76,8 @@ fn likely(rows: &[Row], joint: usize) -> f64 {
     let is_same_side = over_measured * over_model > 0.0 && (over_measured - 1.0) * (over_model - 1.0) > 0.0;
     let scale = (over_measured * over_model).sqrt().copysign(over_measured);
     if forth.is_one() || inverse.is_one() || !is_same_side || !scale.is_finite() || scale == 0.0 {
-        // Its sign may be certain nevertheless.
-        return if forth.value < -SIGNIFICANT * forth.error { -1.0 } else { 1.0 };
+        // Its sign may be told nevertheless, by friction as well.
+        return if forth.value < 0.0 && !forth.is_one() { -1.0 } else { 1.0 };
     }
     if (scale + 1.0).abs() <= LEAST {
         -1.0
