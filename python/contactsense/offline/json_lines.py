@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Iterable, Mapping
+from typing import Any
 
-from .result import Replay
 from .whole import whole_file
 
 
-def write_json_lines(replay: Replay, path: str | os.PathLike[str]) -> None:
-    """See `Replay.to_json_lines`."""
+def write_json_lines(contacts: Iterable[Mapping[str, Any]], path: str | os.PathLike[str]) -> None:
+    """One JSON object a contact; the file appears whole or not at all."""
     with whole_file(path) as file:
-        lines = [json.dumps(contact.to_dict(), allow_nan=False) + "\n" for contact in replay.contacts]
+        lines = [json.dumps(contact, allow_nan=False) + "\n" for contact in contacts]
         file.write_text("".join(lines), encoding="utf-8")

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from .. import _core
 from .._extras import require
+from ..log import Log
 from ..log.joint_columns import JointColumns
-from .result import Replay
 from .whole import whole_file
 
 JOINT_STATES = "/joint_states"
@@ -91,8 +93,13 @@ class _Marker:
     ARROW, SPHERE = 0, 2
 
 
-def write_mcap(replay: Replay, path: str | os.PathLike[str], robot: Any) -> None:
-    """See `Replay.to_mcap`."""
+Columns = Mapping[str, NDArray[Any]]
+
+
+def write_mcap(
+    log: Log, ticks: Columns, found: Columns, path: str | os.PathLike[str], robot: _core.Robot
+) -> None:
+    """A log with the columns of its ticks and of contacts in them; the file appears whole or not at all."""
     require("log", "rosbags", "mcap")
     from mcap.writer import Writer
 
@@ -108,18 +115,19 @@ def write_mcap(replay: Replay, path: str | os.PathLike[str], robot: Any) -> None
         ):
             schema = writer.register_schema(kind, "ros2msg", messages.definition(kind))
             channels[topic] = (writer.register_channel(topic, "cdr", schema), kind)
-        for number, (time, topic, message) in enumerate(_all(replay, robot, messages)):
+        for number, (time, topic, message) in enumerate(_all(log, ticks, found, robot, messages)):
             channel, kind = channels[topic]
             stamp = round(time * _NANOSECONDS)
             writer.add_message(channel, stamp, messages.pack(message, kind), stamp, number)
         writer.finish()
 
 
-def _all(replay: Replay, robot: Any, messages: _Messages) -> Iterator[tuple[float, str, Any]]:
+def _all(
+    log: Log, ticks: Columns, found: Columns, robot: _core.Robot, messages: _Messages
+) -> Iterator[tuple[float, str, Any]]:
     """All messages in the order of time."""
     joints = JointColumns(robot)
     names = list(joints.names)
-    log, ticks, found = replay.log, replay.ticks, replay.contact_ticks
     position = joints.positions(log.q)
     columns = [joints.velocities(rows) for rows in (log.v, ticks["external_torque"])]
     effort = None if log.tau is None else joints.velocities(log.tau)

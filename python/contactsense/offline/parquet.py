@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._extras import require
-from .result import Replay
 from .whole import whole_file
 
 _CONTACT: dict[str, Any] = {
@@ -21,26 +20,21 @@ _CONTACT: dict[str, Any] = {
 }  # fmt: skip
 
 
-def write_parquet(replay: Replay, folder: str | os.PathLike[str]) -> None:
-    """See `Replay.to_parquet`."""
+def write_parquet(tables: Mapping[str, Mapping[str, NDArray[Any]]], folder: str | os.PathLike[str]) -> None:
+    """One file a table, of columns by name; each appears whole or not at all."""
     require("log", "pyarrow")
     import pyarrow.parquet
 
-    tables = {
-        "contacts": contact_columns(replay),
-        "contact_ticks": replay.contact_ticks,
-        "ticks": replay.ticks,
-    }
     for name, columns in tables.items():
         with whole_file(Path(folder) / f"{name}.parquet") as file:
             pyarrow.parquet.write_table(as_table(columns), file)
 
 
-def contact_columns(replay: Replay) -> dict[str, NDArray[Any]]:
+def contact_columns(contacts: Sequence[Any]) -> dict[str, NDArray[Any]]:
     """Columns with one value a contact."""
     columns: dict[str, NDArray[Any]] = {}
     for name, kind in _CONTACT.items():
-        values = [getattr(contact, name) for contact in replay.contacts]
+        values = [getattr(contact, name) for contact in contacts]
         if isinstance(kind, int):
             columns[name] = np.array(values, dtype=np.float64).reshape(-1, kind)
         else:

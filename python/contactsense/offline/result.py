@@ -10,7 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _core
 from ..log import Log
+from .json_lines import write_json_lines
+from .mcap import write_mcap
+from .parquet import contact_columns, write_parquet
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,9 +116,12 @@ class Replay:
             MissingExtraError: pyarrow is not installed.
             OSError: a file cannot be written; none is left half written.
         """
-        from .parquet import write_parquet
-
-        write_parquet(self, folder)
+        tables = {
+            "contacts": contact_columns(self.contacts),
+            "contact_ticks": self.contact_ticks,
+            "ticks": self.ticks,
+        }
+        write_parquet(tables, folder)
 
     def to_json_lines(self, path: str | os.PathLike[str]) -> None:
         """Writes one JSON object a contact, a line each; see `ReplayedContact.to_dict`.
@@ -125,11 +132,9 @@ class Replay:
         Raises:
             OSError: the file cannot be written; none is left half written.
         """
-        from .json_lines import write_json_lines
+        write_json_lines((contact.to_dict() for contact in self.contacts), path)
 
-        write_json_lines(self, path)
-
-    def to_mcap(self, path: str | os.PathLike[str], robot: Any) -> None:
+    def to_mcap(self, path: str | os.PathLike[str], robot: _core.Robot) -> None:
         """Writes the log with what was found as an MCAP file of ROS 2 messages, which Foxglove shows.
 
         Topics: `/joint_states` and `/contactsense/external_torque` of type `sensor_msgs/msg/JointState`, and
@@ -143,9 +148,7 @@ class Replay:
             MissingExtraError: rosbags or mcap is not installed.
             OSError: the file cannot be written; none is left half written.
         """
-        from .mcap import write_mcap
-
-        write_mcap(self, path, robot)
+        write_mcap(self.log, self.ticks, self.contact_ticks, path, robot)
 
 
 def _plain(value: Any) -> Any:
