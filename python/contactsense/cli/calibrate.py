@@ -12,43 +12,23 @@ import typer
 from .._extras import require
 from ..calibration import calibrate
 from ..offline.residuals import residuals, settled
-from .log_options import (
-    ColumnOption,
-    ConstantsOption,
-    GeometryOption,
-    LockedOption,
-    PackageOption,
-    RateOption,
-    RobotOption,
-    TopicOption,
-    UnitOption,
-    load_log,
-    load_robot,
-)
+from .log_options import LogOptions, with_log_options
 
 
 def register(parent: typer.Typer) -> None:
     """Adds `calibrate` to the command line."""
-    parent.command("calibrate")(command)
+    parent.command("calibrate")(with_log_options(command))
 
 
 def command(
     log: Annotated[
         Path, typer.Argument(metavar="LOG", help="File or folder of a bag: motion without contact.")
     ],
-    robot: RobotOption,
-    package_dir: PackageOption = None,
-    lock: LockedOption = None,
-    geometry: GeometryOption = "collision",
+    options: LogOptions,
     payload_link: Annotated[
         str | None, typer.Option(help="Link that holds a payload which the description lacks.")
     ] = None,
     false_alarms: Annotated[float, typer.Option(help="False alarms an hour that levels are set for.")] = 1.0,
-    column: ColumnOption = None,
-    topic: TopicOption = None,
-    unit: UnitOption = None,
-    torque_constants: ConstantsOption = None,
-    rate: RateOption = None,
     out: Annotated[Path, typer.Option(help="File to write the calibration to.")] = Path("calibration.yaml"),
     png: Annotated[
         Path | None, typer.Option(help="Picture of the residuals before and after, and of the motion.")
@@ -62,8 +42,8 @@ def command(
         from .._pictures import picture_file
 
         png = picture_file("png", png)
-    loaded = load_robot(robot, package_dir, lock, geometry)
-    measured = load_log(log, loaded, column, topic, unit, torque_constants, rate)
+    loaded = options.load_robot()
+    measured = options.load_log(log, loaded)
     learnt = calibrate(loaded, measured, false_alarms_per_hour=false_alarms, payload_link=payload_link)
     before, after = residuals(loaded, measured), residuals(loaded, measured, learnt)
     rows = settled(measured)

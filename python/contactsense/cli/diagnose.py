@@ -12,39 +12,19 @@ from .. import diagnose
 from .._extras import require
 from ..errors import InputError
 from ..offline.residuals import residuals
-from .log_options import (
-    ColumnOption,
-    ConstantsOption,
-    GeometryOption,
-    LockedOption,
-    PackageOption,
-    RateOption,
-    RobotOption,
-    TopicOption,
-    UnitOption,
-    load_log,
-    load_robot,
-)
+from .log_options import LogOptions, with_log_options
 
 
 def register(parent: typer.Typer) -> None:
     """Adds `diagnose` to the command line."""
-    parent.command("diagnose")(command)
+    parent.command("diagnose")(with_log_options(command))
 
 
 def command(
     log: Annotated[
         Path, typer.Argument(metavar="LOG", help="File or folder of a bag: motion without contact.")
     ],
-    robot: RobotOption,
-    package_dir: PackageOption = None,
-    lock: LockedOption = None,
-    geometry: GeometryOption = "collision",
-    column: ColumnOption = None,
-    topic: TopicOption = None,
-    unit: UnitOption = None,
-    torque_constants: ConstantsOption = None,
-    rate: RateOption = None,
+    options: LogOptions,
     png: Annotated[Path | None, typer.Option(help="Picture of the external torque of each joint.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
@@ -55,8 +35,8 @@ def command(
         from .._pictures import picture_file
 
         png = picture_file("png", png)
-    loaded = load_robot(robot, package_dir, lock, geometry)
-    measured = load_log(log, loaded, column, topic, unit, torque_constants, rate)
+    loaded = options.load_robot()
+    measured = options.load_log(log, loaded)
     if measured.tau is None:
         raise InputError("log: has an external torque only; diagnose needs torques of the motors")
     findings = diagnose(loaded, measured.q, measured.v, measured.tau, time=measured.time)

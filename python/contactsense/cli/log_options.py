@@ -6,9 +6,11 @@ import fnmatch
 import logging
 import sys
 from collections.abc import Callable, Sequence
-from functools import partial
+from dataclasses import dataclass, fields
+from functools import partial, wraps
+from inspect import Signature, signature
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, get_type_hints
 
 import typer
 
@@ -63,28 +65,86 @@ RateOption = Annotated[
 ]
 
 
-def load_robot(
-    name: str, package_dirs: Sequence[Path] | None, locked: Sequence[str] | None, geometry: str
-) -> Robot:
-    """The robot of the options."""
-    if name in DESCRIPTIONS:
-        return Robot.named(name)
-    shapes = next((known for known in _GEOMETRIES if known == geometry), None)
-    if shapes is None:
-        raise InputError(f"geometry: must be collision, visual or collision_or_visual, not {geometry!r}")
-    folders = list(package_dirs or ())
-    load = partial(Robot.from_urdf, name, package_dirs=folders, geometry=shapes, missing_meshes="warn")
-    if not locked:
-        return load()
-    joints: dict[str, float] = {}
-    known: tuple[str, ...] = ()
-    for key, value in pairs("lock", locked, default="0").items():
-        matching = [key]
-        if "*" in key:
-            known = known or _quietly(load).joint_names
-            matching = fnmatch.filter(known, key)
-        joints.update(dict.fromkeys(matching, _number("lock", value)))
-    return load(locked_joints=joints)
+@dataclass(frozen=True)
+class LogOptions:
+    """What the options say of the robot and of how its log is read."""
+
+    robot: RobotOption
+    package_dir: PackageOption = None
+    lock: LockedOption = None
+    geometry: GeometryOption = "collision"
+    column: ColumnOption = None
+    topic: TopicOption = None
+    unit: UnitOption = None
+    torque_constants: ConstantsOption = None
+    rate: RateOption = None
+
+    def load_robot(self) -> Robot:
+        """The robot."""
+        if self.robot in DESCRIPTIONS:
+            return Robot.named(self.robot)
+        shapes = next((known for known in _GEOMETRIES if known == self.geometry), None)
+        if shapes is None:
+            raise InputError(
+                f"geometry: must be collision, visual or collision_or_visual, not {self.geometry!r}"
+            )
+        load = partial(
+            Robot.from_urdf,
+            self.robot,
+            package_dirs=self.package_dir or [],
+            geometry=shapes,
+            missing_meshes="warn",
+        )
+        if not self.lock:
+            return load()
+        joints: dict[str, float] = {}
+        known: tuple[str, ...] = ()
+        for key, value in pairs("lock", self.lock, default="0").items():
+            matching = [key]
+            if "*" in key:
+                known = known or _quietly(load).joint_names
+                matching = fnmatch.filter(known, key)
+            joints.update(dict.fromkeys(matching, _number("lock", value)))
+        return load(locked_joints=joints)
+
+    def load_log(self, path: Path, robot: Robot) -> Log:
+        """The log of a file; what was chosen is printed on stderr."""
+        numbers: list[float] | float | None = None
+        if self.torque_constants is not None:
+            numbers = [_number("torque-constants", it) for it in self.torque_constants.split(",")]
+            numbers = numbers[0] if len(numbers) == 1 else numbers
+        log = read_log(
+            path,
+            robot,
+            columns=pairs("column", self.column),
+            topics=self.topic or None,
+            units=pairs("unit", self.unit),
+            torque_constants=numbers,
+            rate=self.rate,
+        )
+        print(log.reading, file=sys.stderr)
+        return log
+
+
+def with_log_options(command: Callable[..., None]) -> Callable[..., None]:
+    """A command whose argument `options` becomes the options of `LogOptions`."""
+
+    @wraps(command)
+    def wrapper(**given: Any) -> None:
+        shared = {field.name: given.pop(field.name) for field in fields(LogOptions)}
+        command(options=LogOptions(**shared), **given)
+
+    own = [it for it in signature(command).parameters.values() if it.name != "options"]
+    parameters = [*own, *signature(LogOptions).parameters.values()]
+    # Those of the command are read from its annotations, which must be no text.
+    hints = {
+        **get_type_hints(command, include_extras=True),
+        **get_type_hints(LogOptions, include_extras=True),
+    }
+    by_name = [it.replace(kind=it.KEYWORD_ONLY, annotation=hints[it.name]) for it in parameters]
+    wrapper.__signature__ = Signature(by_name)  # type: ignore[attr-defined]
+    wrapper.__annotations__ = {it.name: it.annotation for it in by_name}
+    return wrapper
 
 
 def _quietly(load: Callable[[], Robot]) -> Robot:
@@ -95,30 +155,6 @@ def _quietly(load: Callable[[], Robot]) -> Robot:
         return load()
     finally:
         logger.disabled = before
-
-
-def load_log(
-    path: Path,
-    robot: Robot,
-    columns: Sequence[str] | None,
-    topics: Sequence[str] | None,
-    units: Sequence[str] | None,
-    constants: str | None,
-    rate: float | None,
-) -> Log:
-    """The log of the options; what was chosen is printed on stderr."""
-    numbers = None if constants is None else [_number("torque-constants", it) for it in constants.split(",")]
-    log = read_log(
-        path,
-        robot,
-        columns=pairs("column", columns),
-        topics=topics or None,
-        units=pairs("unit", units),
-        torque_constants=numbers[0] if numbers is not None and len(numbers) == 1 else numbers,
-        rate=rate,
-    )
-    print(log.reading, file=sys.stderr)
-    return log
 
 
 def pairs(option: str, given: Sequence[str] | None, default: str | None = None) -> dict[str, str]:

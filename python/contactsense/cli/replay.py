@@ -19,19 +19,7 @@ from ..errors import InputError
 from ..log import Log
 from ..offline import Replay, replay
 from ..robot import Robot
-from .log_options import (
-    ColumnOption,
-    ConstantsOption,
-    GeometryOption,
-    LockedOption,
-    PackageOption,
-    RateOption,
-    RobotOption,
-    TopicOption,
-    UnitOption,
-    load_log,
-    load_robot,
-)
+from .log_options import LogOptions, with_log_options
 
 # Exit codes.
 INTERRUPTED = 130
@@ -42,17 +30,14 @@ _OFTEN = 0.5
 
 def register(parent: typer.Typer) -> None:
     """Adds `replay` to the command line."""
-    parent.command("replay")(command)
+    parent.command("replay")(with_log_options(command))
 
 
 def command(
     logs: Annotated[
         list[Path], typer.Argument(metavar="LOG...", help="Files or folders of bags; one log each.")
     ],
-    robot: RobotOption,
-    package_dir: PackageOption = None,
-    lock: LockedOption = None,
-    geometry: GeometryOption = "collision",
+    options: LogOptions,
     calibration: Annotated[
         Path | None, typer.Option(help="File of `contactsense calibrate`: noise, friction, masses, levels.")
     ] = None,
@@ -67,11 +52,6 @@ def command(
         float | None,
         typer.Option(help="Time constant in s of the bias that is learnt without contact (default: none)."),
     ] = None,
-    column: ColumnOption = None,
-    topic: TopicOption = None,
-    unit: UnitOption = None,
-    torque_constants: ConstantsOption = None,
-    rate: RateOption = None,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for contacts.jsonl, Parquet tables and replay.mcap (one folder a log)."),
@@ -84,11 +64,11 @@ def command(
     require("cli", "rich")
     if out is not None:
         require("log", "pyarrow", "rosbags", "mcap")
-    loaded = load_robot(robot, package_dir, lock, geometry)
+    loaded = options.load_robot()
     known = None if calibration is None else Calibration.load(calibration)
     code = 0
     for path in logs:
-        log = load_log(path, loaded, column, topic, unit, torque_constants, rate)
+        log = options.load_log(path, loaded)
         monitor = make_monitor(loaded, log, known, threshold, gain, bias_time)
         with progress_bar(path.name, as_json) as show:
             result = replay(log, monitor, on_progress=show)
