@@ -11,12 +11,7 @@ from numpy.typing import ArrayLike
 
 from .. import _core
 from ..errors import InputError
-from .choice import COLUMNS
-from .files import read_recording
 from .log import Log
-from .robot_log import Wishes, robot_log
-from .torque_constants import check_constants
-from .units import check_units
 
 
 def read_log(
@@ -69,6 +64,13 @@ def read_log(
         >>> cs.read_log(file, robot)
         Log(3 rows, 0.002 s: time, q, v, tau)
     """
+    # These take milliseconds that programs without files do not need.
+    from .choice import COLUMNS
+    from .files import read_recording
+    from .robot_log import Wishes, robot_log
+    from .torque_constants import check_constants
+    from .units import check_units
+
     if not isinstance(robot, _core.Robot):
         raise InputError(f"robot: expected a contactsense.Robot, got {type(robot).__name__}")
     if robot.floating_base:

@@ -12,9 +12,6 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..log import Log
-from .json_lines import write_json_lines
-from .mcap import write_mcap
-from .parquet import contact_columns, write_parquet
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,6 +113,8 @@ class Replay:
             MissingExtraError: pyarrow is not installed.
             OSError: a file cannot be written; none is left half written.
         """
+        from .parquet import contact_columns, write_parquet
+
         tables = {
             "contacts": contact_columns(self.contacts),
             "contact_ticks": self.contact_ticks,
@@ -132,6 +131,8 @@ class Replay:
         Raises:
             OSError: the file cannot be written; none is left half written.
         """
+        from .json_lines import write_json_lines  # it brings modules that few programs need
+
         write_json_lines((contact.to_dict() for contact in self.contacts), path)
 
     def to_mcap(self, path: str | os.PathLike[str], robot: _core.Robot) -> None:
@@ -148,6 +149,8 @@ class Replay:
             MissingExtraError: rosbags or mcap is not installed.
             OSError: the file cannot be written; none is left half written.
         """
+        from .mcap import write_mcap
+
         write_mcap(self.log, self.ticks, self.contact_ticks, path, robot)
 
 
