@@ -122,15 +122,14 @@ def _without_jumps(time: Column) -> tuple[Column, int]:
     steps = np.diff(time)
     forward = steps[steps > 0.0]
     median = float(np.median(forward)) if len(forward) else 0.0
+    shifts = np.zeros(len(time))
     jumps = 0
-    mended = time.copy()
-    for row in np.flatnonzero(steps < 0.0):
-        ahead = mended[row]
-        window = mended[row + 1 : row + 1 + _LATE_ROWS]
-        if len(window) == _LATE_ROWS and np.all(window < ahead):
-            mended[row + 1 :] += ahead + median - mended[row + 1]
+    for row in np.flatnonzero(steps < 0.0).tolist():
+        following = time[row + 1 : row + 1 + _LATE_ROWS]
+        if len(following) == _LATE_ROWS and np.all(following < time[row]):
+            shifts[row + 1] = time[row] + median - time[row + 1]
             jumps += 1
-    return mended, jumps
+    return time + np.cumsum(shifts), jumps
 
 
 def held(time: Column, table_time: Column) -> NDArray[np.intp]:
