@@ -111,6 +111,13 @@ def test_rows_out_of_order_repeated_or_incomplete_are_mended(
     assert [line.split()[0] for line in log.reading.mended] == ["1"] * 4
 
 
+def test_numbers_that_nothing_measures_are_missing(tmp_path: Path, columns: dict[str, np.ndarray]) -> None:
+    columns["pos_2"][20], columns["effort_1"][30], columns["time"][40] = 1e300, -1e200, 1e308
+    log = cs.read_log(write_csv(tmp_path / "a.csv", columns), arm())
+    assert len(log) == 197
+    assert np.abs(log.v).max() < 1.0
+
+
 def test_a_clock_that_is_set_back_goes_on(tmp_path: Path, columns: dict[str, np.ndarray]) -> None:
     stamps = columns["time"].copy()
     stamps[100:] -= 5.0

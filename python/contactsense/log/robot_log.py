@@ -22,6 +22,9 @@ from .units import scale, unit_of, velocity_unit
 
 Rows = NDArray[np.float64]
 
+# No measurement is as large as this, in whatever unit: what is there is a broken file.
+_LARGEST = 1e12
+
 
 @dataclass(frozen=True)
 class Wishes:
@@ -108,7 +111,8 @@ def _values(
             rows_of[id(group.table)] = _last_rows(recording, group.table, axis, time_column)
         rows, present = rows_of[id(group.table)]
         values[quantity] = np.column_stack([group.values(joint)[rows] for joint in joints])
-        known &= present & np.all(np.isfinite(values[quantity]), axis=1)
+        # A NaN is not less than anything.
+        known &= present & np.all(np.abs(values[quantity]) < _LARGEST, axis=1)
     return values, known
 
 

@@ -26,6 +26,8 @@ _STEPS = (("s", 0.2), ("ms", 200.0), ("us", 2e5), ("ns", np.inf))
 _LATE_ROWS = 10
 # A step of so many median ones is a gap.
 _GAP = 5.0
+# No clock shows more [s]: 30,000 years.
+_LATEST = 1e12
 # Stamps since 1970 are rounded to this [s].
 ROUNDING = 1e-6
 
@@ -48,7 +50,7 @@ def time_of(recording: Recording, table: Table, column: str | None) -> TimeAxis:
         InputError: there is no time, or none of its rows can be used.
     """
     name, seconds = _seconds(recording, table, column)
-    rows = np.flatnonzero(np.isfinite(seconds))
+    rows = np.flatnonzero(np.abs(seconds) < _LATEST)
     missing = len(seconds) - len(rows)
     if len(rows) < 2:
         raise InputError(f"columns: {table.name} has {len(rows)} rows with a time; at least 2 are wanted")
@@ -89,7 +91,7 @@ def _seconds(recording: Recording, table: Table, column: str | None) -> tuple[st
         return "when messages were received", table.received
     by_words = {words(name): name for name in reversed(list(table.columns))}
     named = [by_words[words(known)] for known in _NAMES if words(known) in by_words]
-    advancing = [name for name in named if np.any(np.diff(table.columns[name]) > 0.0)]
+    advancing = [name for name in named if np.any(table.columns[name][1:] > table.columns[name][:-1])]
     if advancing:
         best = min(advancing, key=lambda name: _faults(table.columns[name]))
         return _scaled(best, table.columns[best])
@@ -101,11 +103,12 @@ def _seconds(recording: Recording, table: Table, column: str | None) -> tuple[st
 
 def _faults(values: Column) -> tuple[bool, bool]:
     """Whether values are missing, and whether it is only a counter of rows: other columns are better."""
-    finite = values[np.isfinite(values)]
+    finite = values[np.abs(values) < _LATEST / _UNITS["ns"]]
     return len(finite) < len(values), bool(np.all(np.diff(finite) == 1.0))
 
 
 def _scaled(name: str, values: Column) -> tuple[str, Column]:
+    values = np.where(np.abs(values) < _LATEST / _UNITS["ns"], values, np.nan)
     steps = np.diff(values[np.isfinite(values)])
     steps = steps[steps > 0.0]
     median = float(np.median(steps)) if len(steps) else 0.0
