@@ -49,7 +49,7 @@ def time_of(recording: Recording, table: Table, column: str | None) -> TimeAxis:
     Raises:
         InputError: there is no time, or none of its rows can be used.
     """
-    name, seconds = _seconds(recording, table, column)
+    name, seconds, offset = _seconds(recording, table, column)
     rows = np.flatnonzero(np.abs(seconds) < _LATEST)
     missing = len(seconds) - len(rows)
     if len(rows) < 2:
@@ -74,10 +74,13 @@ def time_of(recording: Recording, table: Table, column: str | None) -> TimeAxis:
     ]
     rate = 1.0 / float(np.median(steps)) if len(steps) else 0.0
     chosen = f"time from {name}: {len(time)} rows, {time[-1] - time[0]:.3f} s, {rate:.4g} rows a second"
-    return TimeAxis(rows, time - time[0], start, chosen, tuple(text for count, text in notes if count))
+    return TimeAxis(
+        rows, time - time[0], offset + start, chosen, tuple(text for count, text in notes if count)
+    )
 
 
-def _seconds(recording: Recording, table: Table, column: str | None) -> tuple[str, Column]:
+def _seconds(recording: Recording, table: Table, column: str | None) -> tuple[str, Column, float]:
+    """Where the time is from; the time after an offset, and the offset [s]."""
     if column is not None:
         if column not in table.columns:
             raise InputError(
@@ -86,9 +89,9 @@ def _seconds(recording: Recording, table: Table, column: str | None) -> tuple[st
         return _scaled(column, table.columns[column])
     stamp = table.columns.get("header.stamp")
     if stamp is not None and len(stamp) > 1 and np.nanmax(stamp) > np.nanmin(stamp):
-        return "header.stamp", stamp
+        return "header.stamp", stamp, 0.0
     if table.received is not None:
-        return "when messages were received", table.received
+        return "when messages were received", table.received, 0.0
     by_words = {words(name): name for name in reversed(list(table.columns))}
     named = [by_words[words(known)] for known in _NAMES if words(known) in by_words]
     advancing = [name for name in named if np.any(table.columns[name][1:] > table.columns[name][:-1])]
@@ -107,17 +110,17 @@ def _faults(values: Column) -> tuple[bool, bool]:
     return len(finite) < len(values), bool(np.all(np.diff(finite) == 1.0))
 
 
-def _scaled(name: str, values: Column) -> tuple[str, Column]:
+def _scaled(name: str, values: Column) -> tuple[str, Column, float]:
     values = np.where(np.abs(values) < _LATEST / _UNITS["ns"], values, np.nan)
     steps = np.diff(values[np.isfinite(values)])
     steps = steps[steps > 0.0]
     median = float(np.median(steps)) if len(steps) else 0.0
     last = words(name)[-1:]
     unit = last[0] if last and last[0] in _UNITS else next(unit for unit, most in _STEPS if median <= most)
-    # From the first row on: nanoseconds since 1970 have more digits than a number.
+    # Differences first: nanoseconds since 1970 have as many digits as a number can hold.
     first = values[np.isfinite(values)][:1]
     offset = float(first[0]) if len(first) else 0.0
-    return f"'{name}' [{unit}]", (values - offset) * _UNITS[unit] + offset * _UNITS[unit] * (unit == "s")
+    return f"'{name}' [{unit}]", (values - offset) * _UNITS[unit], offset * _UNITS[unit]
 
 
 def _without_jumps(time: Column) -> tuple[Column, int]:
