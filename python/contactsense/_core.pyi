@@ -1765,7 +1765,11 @@ class ContactMonitor:
         NDArray[np.float64],
         NDArray[np.float64],
         list[tuple[int, tuple[Contact, ...]]],
-    ]: ...
+    ]:
+        """`update` of rows one after the other, or `update_external` where `external` says so.
+
+        All arrays are flat; a step of NaN is that of the monitor, `wrenches` has one row for each sensor of each row.
+        """
     def update_external(
         self,
         q: ArrayLike,

@@ -18,8 +18,9 @@ type Columns<'py> = (Column<'py>, Column<'py>, Column<'py>, Column<'py>, Vec<(us
 
 #[pymethods]
 impl PyContactMonitor {
-    /// `update` of rows one after the other, or `update_external` where `external` says so. All arrays are flat; a step of NaN
-    /// is that of the monitor, `wrenches` has one row for each sensor of each row.
+    /// `update` of rows one after the other, or `update_external` where `external` says so.
+    ///
+    /// All arrays are flat; a step of NaN is that of the monitor, `wrenches` has one row for each sensor of each row.
     fn _update_rows<'py>(
         &self,
         py: Python<'py>,
