@@ -138,7 +138,7 @@ def test_mcap_holds_the_log_and_what_was_found(result: cs.Replay, tmp_path: Path
     reader = pytest.importorskip("mcap.reader")
     typesys = pytest.importorskip("rosbags.typesys")
     file = tmp_path / "a.mcap"
-    result.to_mcap(file, arm())
+    result.to_mcap(file)
     store = typesys.get_typestore(typesys.Stores.ROS2_HUMBLE)
     with file.open("rb") as stream:
         messages = [

@@ -32,7 +32,7 @@ SIGNATURES = {
     "replay": "log, monitor, *, on_progress=None",
     "Replay.to_parquet": "folder",
     "Replay.to_json_lines": "path",
-    "Replay.to_mcap": "path, robot",
+    "Replay.to_mcap": "path",
     "ReplayedContact.to_dict": "",
     "Calibration.of_description": "robot",
     "Calibration.load": "path",

@@ -74,7 +74,7 @@ def command(
             result = replay(log, monitor, on_progress=show)
         print_contacts(path, result, as_json)
         if out is not None:
-            write(result, out / _stem(path) if len(logs) > 1 else out, loaded)
+            write(result, out / _stem(path) if len(logs) > 1 else out)
         if result.interrupted:
             raise typer.Exit(INTERRUPTED)
         if log.reading is not None and log.reading.damage:
@@ -138,13 +138,13 @@ def print_contacts(path: Path, result: Replay, as_json: bool) -> None:
         )
 
 
-def write(result: Replay, folder: Path, robot: Robot) -> None:
+def write(result: Replay, folder: Path) -> None:
     """All files of a result."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         result.to_json_lines(folder / "contacts.jsonl")
         result.to_parquet(folder)
-        result.to_mcap(folder / "replay.mcap", robot)
+        result.to_mcap(folder / "replay.mcap")
     except OSError as cause:
         raise InputError(f"out: cannot write to '{folder}': {cause.strerror or cause}") from cause
 

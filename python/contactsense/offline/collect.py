@@ -24,13 +24,13 @@ _VECTORS = ("point", "point_local", "force")
 class Collector:
     """Takes in the reports of a log's rows."""
 
-    def __init__(self, log: Log, nv: int) -> None:
-        self._log = log
+    def __init__(self, log: Log, robot: _core.Robot) -> None:
+        self._log, self._robot = log, robot
         rows = len(log)
         self._collision = np.zeros(rows, dtype=bool)
         self._onset = np.zeros(rows, dtype=bool)
         self._significance = np.full(rows, np.nan)
-        self._external = np.zeros((rows, nv))
+        self._external = np.zeros((rows, robot.nv))
         # One number for each contact in each tick: contacts themselves would take kilobytes.
         self._rows, self._ids = array("q"), array("q")
         self._links: list[str] = []
@@ -87,7 +87,7 @@ class Collector:
             "external_torque": self._external[done],
         }
         columns = self._columns()
-        return Replay(self._log, ticks, columns, contacts_of(columns), interrupted)
+        return Replay(self._log, self._robot, ticks, columns, contacts_of(columns), interrupted)
 
     def _columns(self) -> Mapping[str, NDArray[Any]]:
         rows = np.array(self._rows, dtype=np.int64)

@@ -48,7 +48,7 @@ def replay(log: Log, monitor: _core.ContactMonitor, *, on_progress: Progress | N
         (0, 0)
     """
     _check(log, monitor)
-    collector = Collector(log, monitor.robot.nv)
+    collector = Collector(log, monitor.robot)
     rows = len(log)
     interrupted = False
     try:

@@ -70,6 +70,7 @@ class Replay:
 
     Args:
         log: the log.
+        robot: the monitor's robot.
         ticks: columns with one value a row that was replayed: `time`, `collision`, `onset`, `significance`,
             `external_torque` `(n, nv)` [s, Nm]; see `ContactReport`.
         contact_ticks: columns with one value for each contact in each tick: `row`, `time`, `id`, `link`,
@@ -95,6 +96,7 @@ class Replay:
     """
 
     log: Log
+    robot: _core.Robot
     ticks: Mapping[str, NDArray[Any]]
     contact_ticks: Mapping[str, NDArray[Any]]
     contacts: tuple[ReplayedContact, ...]
@@ -135,15 +137,14 @@ class Replay:
 
         write_json_lines((contact.to_dict() for contact in self.contacts), path)
 
-    def to_mcap(self, path: str | os.PathLike[str], robot: _core.Robot) -> None:
+    def to_mcap(self, path: str | os.PathLike[str]) -> None:
         """Writes the log with what was found as an MCAP file of ROS 2 messages, which Foxglove shows.
 
         Topics: `/joint_states` and `/contactsense/external_torque` of type `sensor_msgs/msg/JointState`, and
         `/contactsense/contacts` of type `visualization_msgs/msg/MarkerArray`, in the frame `world`.
 
         Args:
-            path: the file.
-            robot: the robot of the log, for the names of its joints.
+            path: the file; one that exists is replaced.
 
         Raises:
             MissingExtraError: rosbags or mcap is not installed.
@@ -151,7 +152,7 @@ class Replay:
         """
         from .mcap import write_mcap
 
-        write_mcap(self.log, self.ticks, self.contact_ticks, path, robot)
+        write_mcap(self.log, self.ticks, self.contact_ticks, path, self.robot)
 
 
 def _plain(value: Any) -> Any:
