@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ._extras import require
 from .errors import InputError
 
 if TYPE_CHECKING:
@@ -58,6 +59,19 @@ def picture_file(argument: str, path: str | os.PathLike[str]) -> Path:
     if not os.access(target if target.exists() else target.parent, os.W_OK):
         raise InputError(f"{argument}: cannot write '{path}': permission denied")
     return target
+
+
+def optional_picture(argument: str, path: Path | None) -> Path | None:
+    """`picture_file` of a picture that is drawn where a path is given.
+
+    Raises:
+        InputError: it cannot be written; names `argument`.
+        MissingExtraError: matplotlib is not installed.
+    """
+    if path is None:
+        return None
+    require("plot", "matplotlib")
+    return picture_file(argument, path)
 
 
 def picture_folder(argument: str, path: str | os.PathLike[str]) -> Path:

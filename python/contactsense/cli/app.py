@@ -19,10 +19,9 @@ from .. import ContactSenseError, __version__
 from .._extras import MissingExtraError
 from ..demo import command as demo
 from . import calibrate, diagnose, replay
+from .exit_codes import INTERRUPTED
 
 STUDIES = "contactsense-studies"  # the distribution that adds `study`
-
-INTERRUPTED = 130  # the exit code that shells give to what Ctrl-C ended
 
 
 class _Commands(TyperGroup):

@@ -10,6 +10,7 @@ import numpy as np
 import typer
 
 from .._extras import require
+from .._pictures import optional_picture
 from ..calibration import calibrate
 from ..offline.residuals import residuals, settled
 from .log_options import LogOptions, with_log_options
@@ -37,11 +38,7 @@ def command(
 ) -> None:
     """Learn torque bias, friction, inertias and noise of an arm from its motion without contact."""
     require("cli", "rich")
-    if png is not None:
-        require("plot", "matplotlib")
-        from .._pictures import picture_file
-
-        png = picture_file("png", png)
+    png = optional_picture("png", png)
     loaded = options.load_robot()
     measured = options.load_log(log, loaded)
     learnt = calibrate(loaded, measured, false_alarms_per_hour=false_alarms, payload_link=payload_link)

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
+from .._tables import plain_table
 from ..calibration import Calibration
 
 _COLUMNS = ("joint", "bias", "Coulomb\nfriction", "viscous\nfriction", "rotor\ninertia", "before", "after")
@@ -23,10 +22,7 @@ def print_calibration(
     file: str,
 ) -> None:
     """Prints what was learnt, one row a joint, and what the motion could not tell."""
-    table = Table(
-        title=f"Calibration of {calibration.robot_name}", title_justify="left", title_style="bold",
-        box=SIMPLE_HEAD, header_style="bold", pad_edge=False, padding=(0, 1, 0, 0),
-    )  # fmt: skip
+    table = plain_table(f"Calibration of {calibration.robot_name}")
     for header, unit in zip(_COLUMNS, _UNITS, strict=True):
         table.add_column(
             Text(f"{header}\n{unit}".strip()), justify="left" if header == "joint" else "right", no_wrap=True

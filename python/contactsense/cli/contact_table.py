@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from rich.box import SIMPLE_HEAD
 from rich.table import Table
 from rich.text import Text
 
+from .._tables import plain_table
 from ..offline import Replay, ReplayedContact
 
 # Header, and whether the column is aligned to the right.
@@ -32,17 +32,8 @@ def contact_table(name: str, result: Replay) -> Table:
     seconds = float(time[-1] - time[0]) if len(time) else 0.0
     until = ", until it was interrupted" if result.interrupted else ""
     title = f"{name}: {len(result.contacts)} contacts in {seconds:.1f} s{until}"
-    table = Table(
-        title=title,
-        title_justify="left",
-        title_style="bold",
-        caption=_NOTE,
-        caption_justify="left",
-        box=SIMPLE_HEAD,
-        header_style="bold",
-        pad_edge=False,
-        padding=(0, 1, 0, 0),
-    )
+    table = plain_table(title)
+    table.caption, table.caption_justify = _NOTE, "left"
     for header, right in _COLUMNS:
         table.add_column(Text(header), justify="right" if right else "left", no_wrap=True)
     for contact in result.contacts:

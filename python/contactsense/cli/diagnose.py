@@ -10,6 +10,7 @@ import typer
 
 from .. import diagnose
 from .._extras import require
+from .._pictures import optional_picture
 from ..errors import InputError
 from ..offline.residuals import residuals
 from .log_options import LogOptions, with_log_options
@@ -30,11 +31,7 @@ def command(
 ) -> None:
     """Say what is wrong with a robot's model or measurements, from motion without contact."""
     require("cli", "rich")
-    if png is not None:
-        require("plot", "matplotlib")
-        from .._pictures import picture_file
-
-        png = picture_file("png", png)
+    png = optional_picture("png", png)
     loaded = options.load_robot()
     measured = options.load_log(log, loaded)
     if measured.tau is None:

@@ -19,11 +19,9 @@ from ..errors import InputError
 from ..log import Log
 from ..offline import Replay, replay
 from ..robot import Robot
+from .exit_codes import DAMAGED, INTERRUPTED
 from .log_options import LogOptions, with_log_options
 
-# Exit codes.
-INTERRUPTED = 130
-DAMAGED = 3
 # A robot that is touched for more of the time than this is rather one whose model is wrong.
 _OFTEN = 0.5
 

@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 import numpy as np
-from rich.box import SIMPLE_HEAD
 from rich.console import Console, Group, RenderableType
 from rich.live import Live
 from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
+from .._tables import plain_table
 from .arm import FLOOR
 from .result import DemoResult, HitResult, ImperfectResult, Progress, Standing
 from .settings import DEVIATIONS, Settings
@@ -61,15 +61,7 @@ def live_table(console: Console) -> Iterator[Callable[[Progress], None]]:
 
 def hit_table(hits: Sequence[HitResult], rows: int = 0, title: str | None = None) -> Table:
     """One row a contact, empty rows for those to come."""
-    table = Table(
-        title=title,
-        title_justify="left",
-        title_style="bold",
-        box=SIMPLE_HEAD,
-        header_style="bold",
-        pad_edge=False,
-        padding=(0, 1, 0, 0),
-    )
+    table = plain_table(title)
     for header, right in _COLUMNS:
         table.add_column(escape(header), justify="right" if right else "left", no_wrap=True)
     for hit in hits:
@@ -157,7 +149,7 @@ def _first_title(result: DemoResult) -> str:
 def _compared(result: DemoResult, other: ImperfectResult) -> Table:
     """Both runs side by side."""
     ideal = "ideal torques" if result.noise.none else "noisy torques"
-    table = Table(box=SIMPLE_HEAD, header_style="bold", pad_edge=False, padding=(0, 1, 0, 0))
+    table = plain_table(None)
     table.add_column("")
     for header in (ideal, "imperfect arm,\ncalibrated"):
         table.add_column(header, justify="right")

@@ -24,14 +24,12 @@ class Group:
         quantity: one of `QUANTITIES`.
         table: the table they are of.
         columns: the column of each of the robot's joints that has one.
-        source: what their names have in common.
         others: columns of joints that the robot does not have.
     """
 
     quantity: str
     table: Table
     columns: Mapping[str, str]
-    source: str
     others: tuple[str, ...]
 
     def values(self, joint: str) -> Column:
@@ -100,12 +98,12 @@ def _groups(table: Table, joints: Sequence[str]) -> list[Group]:
         if told is not None:
             by_source.setdefault((told.quantity, told.source), {})[told.joint] = column
     groups = []
-    for (quantity, source), named in by_source.items():
+    for (quantity, _), named in by_source.items():
         matched = _matched(joints, list(named))
         if matched:
             others = tuple(named[name] for name in named if name not in matched.values())
             of_joints = {joint: named[name] for joint, name in matched.items()}
-            groups.append(Group(quantity, table, of_joints, source, others))
+            groups.append(Group(quantity, table, of_joints, others))
     return groups
 
 
@@ -158,5 +156,5 @@ def _named(recording: Recording, joints: Sequence[str], quantity: str, given: st
             columns = dict(zip(joints, given, strict=True)) if set(given) <= set(table.columns) else {}
             others = ()
         if columns:
-            return Group(quantity, table, columns, str(given), others)
+            return Group(quantity, table, columns, others)
     raise InputError(f"columns: no table has {given!r} for {quantity}; there are {listing(recording)}")

@@ -53,13 +53,12 @@ class _Messages:
     def marker(
         self, time: float, number: int, shape: int, points: list[Any], scale: Any, seconds: float
     ) -> Any:
-        make, types = self._types, {"geometry": "geometry_msgs/msg/", "viz": "visualization_msgs/msg/Marker"}
-        point, vector = make[types["geometry"] + "Point"], make[types["geometry"] + "Vector3"]
-        quaternion, pose = make[types["geometry"] + "Quaternion"], make[types["geometry"] + "Pose"]
+        make = self._types
+        geometry = ("Point", "Vector3", "Quaternion", "Pose")
+        point, vector, quaternion, pose = (make[f"geometry_msgs/msg/{name}"] for name in geometry)
         colour = make["std_msgs/msg/ColorRGBA"]
         whole, part = divmod(round(seconds * _NANOSECONDS), _NANOSECONDS)
         at = points[0] if shape == _Marker.SPHERE else np.zeros(3)
-        marker = make[types["viz"]]
         fields = dict(
             header=self.header(time),
             ns="contact" if shape == _Marker.SPHERE else "force",
@@ -83,7 +82,7 @@ class _Messages:
             mesh_file=make["visualization_msgs/msg/MeshFile"]("", np.zeros(0, dtype=np.uint8)),
             mesh_use_embedded_materials=False,
         )
-        return marker(**fields)
+        return make["visualization_msgs/msg/Marker"](**fields)
 
     def markers(self, markers: list[Any]) -> Any:
         return self._types["visualization_msgs/msg/MarkerArray"](markers)
