@@ -37,6 +37,7 @@ from ._core import (
 )
 from .calibration import Calibration, calibrate
 from .errors import ContactSenseError, GeometryError, InputError, ModelError
+from .fleet import FleetReplay, replay_fleet
 from .log import Log, Reading, read_log
 from .offline import Replay, ReplayedContact, replay
 from .robot import Robot
@@ -55,6 +56,7 @@ __all__ = [
     "ContactReport",
     "ContactSenseError",
     "Finding",
+    "FleetReplay",
     "ForceTorqueSensor",
     "GeometryError",
     "Identifiability",
@@ -88,4 +90,5 @@ __all__ = [
     "identify_tool",
     "read_log",
     "replay",
+    "replay_fleet",
 ]

@@ -2,3 +2,4 @@
 
 INTERRUPTED = 130  # as shells give to what Ctrl-C ended
 DAMAGED = 3  # a log is broken; what could be read of it was used
+FAILED = 4  # some of many logs could not be replayed; the others were

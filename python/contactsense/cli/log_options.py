@@ -107,21 +107,23 @@ class LogOptions:
             joints.update(dict.fromkeys(matching, _number("lock", value)))
         return load(locked_joints=joints)
 
+    def reading(self) -> dict[str, Any]:
+        """Arguments of `read_log` by name."""
+        constants: list[float] | float | None = None
+        if self.torque_constants is not None:
+            constants = [_number("torque-constants", it) for it in self.torque_constants.split(",")]
+            constants = constants[0] if len(constants) == 1 else constants
+        return {
+            "columns": pairs("column", self.column),
+            "topics": self.topic or None,
+            "units": pairs("unit", self.unit),
+            "torque_constants": constants,
+            "rate": self.rate,
+        }
+
     def load_log(self, path: Path, robot: Robot) -> Log:
         """The log of a file; what was chosen is printed on stderr."""
-        numbers: list[float] | float | None = None
-        if self.torque_constants is not None:
-            numbers = [_number("torque-constants", it) for it in self.torque_constants.split(",")]
-            numbers = numbers[0] if len(numbers) == 1 else numbers
-        log = read_log(
-            path,
-            robot,
-            columns=pairs("column", self.column),
-            topics=self.topic or None,
-            units=pairs("unit", self.unit),
-            torque_constants=numbers,
-            rate=self.rate,
-        )
+        log = read_log(path, robot, **self.reading())
         print(log.reading, file=sys.stderr)
         return log
 

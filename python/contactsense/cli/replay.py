@@ -4,23 +4,22 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 import typer
 
-from .. import ContactMonitor
 from .._extras import require
 from ..calibration import Calibration
 from ..errors import InputError
-from ..log import Log
+from ..fleet.replay_fleet import Engine
 from ..offline import Replay, replay
-from ..robot import Robot
+from ..offline.monitor_of import monitor_of
 from .exit_codes import DAMAGED, INTERRUPTED
+from .fleet import replay_in_parallel
 from .log_options import LogOptions, with_log_options
+from .progress import progress_bar
 
 # A robot that is touched for more of the time than this is rather one whose model is wrong.
 _OFTEN = 0.5
@@ -52,22 +51,61 @@ def command(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder for contacts.jsonl, Parquet tables and replay.mcap (one folder a log)."),
+        typer.Option(
+            help="Folder for contacts.jsonl, Parquet tables and replay.mcap (one folder a log); with "
+            "--engine, for the data set of all logs."
+        ),
     ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print one JSON object a contact, a line each.")
     ] = False,
+    engine: Annotated[
+        Engine | None,
+        typer.Option(help="Replay logs in parallel, each in a process (local) or a task of Ray (ray)."),
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="With --engine: tasks at a time here (default: one a core).")
+    ] = None,
+    address: Annotated[
+        str | None, typer.Option(help="With --engine ray: address of the cluster (default: start Ray here).")
+    ] = None,
+    name: Annotated[
+        str | None,
+        typer.Option(help="With --engine: the robot's name in the data set (default: the model's)."),
+    ] = None,
+    ticks: Annotated[
+        bool, typer.Option("--ticks", help="With --engine: the data set has a row for each row of each log.")
+    ] = False,
 ) -> None:
     """Find the contacts in logs: when, where and how hard."""
     require("cli", "rich")
+    arguments = monitor_arguments(calibration, threshold, gain, bias_time)
+    if engine is not None:
+        if out is None:
+            raise InputError("out: --engine needs the folder of the data set")
+        code = replay_in_parallel(
+            logs,
+            options.load_robot(),
+            out,
+            name=name,
+            reading=options.reading(),
+            monitor=arguments,
+            ticks=ticks,
+            engine=engine,
+            workers=workers,
+            address=address,
+            as_json=as_json,
+        )
+        raise typer.Exit(code)
+    if workers is not None or address is not None or name is not None or ticks:
+        raise InputError("engine: --workers, --address, --name and --ticks need --engine")
     if out is not None:
         require("log", "pyarrow", "rosbags", "mcap")
     loaded = options.load_robot()
-    known = None if calibration is None else Calibration.load(calibration)
     code = 0
     for path in logs:
         log = options.load_log(path, loaded)
-        monitor = make_monitor(loaded, log, known, threshold, gain, bias_time)
+        monitor = monitor_of(log, loaded, **arguments)
         with progress_bar(path.name, as_json) as show:
             result = replay(log, monitor, on_progress=show)
         print_contacts(path, result, as_json)
@@ -81,38 +119,18 @@ def command(
         raise typer.Exit(code)
 
 
-def make_monitor(
-    robot: Robot,
-    log: Log,
-    calibration: Calibration | None,
-    threshold: float | None,
-    gain: float,
-    bias_time: float | None,
-) -> ContactMonitor:
-    """A monitor for a log at the rate of its rows."""
-    if len(log) < 2:
-        raise InputError(f"log: has {len(log)} rows; at least 2 are wanted")
-    given: dict[str, Any] = {} if threshold is None else {"torque_threshold": threshold}
+def monitor_arguments(
+    calibration: Path | None, threshold: float | None, gain: float, bias_time: float | None
+) -> dict[str, Any]:
+    """Arguments of `ContactMonitor` by name."""
+    arguments: dict[str, Any] = {"observer_gain": gain}
+    if calibration is not None:
+        arguments["calibration"] = Calibration.load(calibration)
+    if threshold is not None:
+        arguments["torque_threshold"] = threshold
     if bias_time is not None:
-        given["bias_time_constant"] = bias_time
-    return ContactMonitor(
-        robot, dt=float(np.median(np.diff(log.time))), observer_gain=gain, calibration=calibration, **given
-    )
-
-
-@contextmanager
-def progress_bar(title: str, quiet: bool) -> Iterator[Callable[[int, int], None] | None]:
-    """A bar on stderr where that is a terminal."""
-    from rich.console import Console
-    from rich.progress import Progress
-
-    console = Console(stderr=True)
-    if quiet or not console.is_terminal:
-        yield None
-        return
-    with Progress(console=console, transient=True) as progress:
-        task = progress.add_task(title, total=None)
-        yield lambda done, rows: progress.update(task, completed=done, total=rows)
+        arguments["bias_time_constant"] = bias_time
+    return arguments
 
 
 def print_contacts(path: Path, result: Replay, as_json: bool) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._extras import require
+from .result import Replay, ReplayedContact
 from .whole import whole_file
 
 _CONTACT: dict[str, Any] = {
@@ -30,7 +31,16 @@ def write_parquet(tables: Mapping[str, Mapping[str, NDArray[Any]]], folder: str 
             pyarrow.parquet.write_table(as_table(columns), file)
 
 
-def contact_columns(contacts: Sequence[Any]) -> dict[str, NDArray[Any]]:
+def replay_tables(result: Replay) -> dict[str, Mapping[str, NDArray[Any]]]:
+    """The columns of each table by its name."""
+    return {
+        "contacts": _contact_columns(result.contacts),
+        "contact_ticks": result.contact_ticks,
+        "ticks": result.ticks,
+    }
+
+
+def _contact_columns(contacts: Sequence[ReplayedContact]) -> dict[str, NDArray[Any]]:
     """Columns with one value a contact."""
     columns: dict[str, NDArray[Any]] = {}
     for name, kind in _CONTACT.items():

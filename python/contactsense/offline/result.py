@@ -115,14 +115,9 @@ class Replay:
             MissingExtraError: pyarrow is not installed.
             OSError: a file cannot be written; none is left half written.
         """
-        from .parquet import contact_columns, write_parquet
+        from .parquet import replay_tables, write_parquet
 
-        tables = {
-            "contacts": contact_columns(self.contacts),
-            "contact_ticks": self.contact_ticks,
-            "ticks": self.ticks,
-        }
-        write_parquet(tables, folder)
+        write_parquet(replay_tables(self), folder)
 
     def to_json_lines(self, path: str | os.PathLike[str]) -> None:
         """Writes one JSON object a contact, a line each; see `ReplayedContact.to_dict`.

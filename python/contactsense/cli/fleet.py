@@ -1,0 +1,86 @@
+"""`contactsense replay --engine ...`: many logs in parallel, into one data set."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from contextlib import redirect_stdout
+from pathlib import Path
+from typing import Any
+
+from ..fleet import FleetReplay, replay_fleet
+from ..fleet.dataset import LOGS
+from ..fleet.replay_fleet import Engine
+from ..fleet.summary import links_of, robots_of
+from ..robot import Robot
+from .exit_codes import DAMAGED, FAILED, INTERRUPTED
+from .progress import progress_bar
+
+
+def replay_in_parallel(
+    logs: Sequence[Path],
+    robot: Robot,
+    folder: Path,
+    *,
+    name: str | None,
+    reading: Mapping[str, Any],
+    monitor: Mapping[str, Any],
+    ticks: bool,
+    engine: Engine,
+    workers: int | None,
+    address: str | None,
+    as_json: bool,
+) -> int:
+    """Replays all logs, prints what was found so far in the whole data set, and gives the exit code."""
+    # Ray writes about tasks that were killed to stdout, which is for results.
+    with progress_bar("logs", as_json) as show, redirect_stdout(sys.stderr):
+        result = replay_fleet(
+            logs,
+            robot,
+            folder,
+            name=name,
+            reading=reading,
+            monitor=monitor,
+            ticks=ticks,
+            engine=engine,
+            workers=workers,
+            address=address,
+            on_progress=show,
+        )
+    _print_faults(result)
+    _print_summary(result, as_json)
+    if result.interrupted:
+        return INTERRUPTED
+    if result.failed:
+        return FAILED
+    return DAMAGED if result.damaged else 0
+
+
+def _print_faults(result: FleetReplay) -> None:
+    for kind, faults in (("damaged", result.damaged), ("failed", result.failed)):
+        for log, fault in faults.items():
+            print(f"{kind}: {log}: {fault}", file=sys.stderr)
+    interrupted = "; interrupted" if result.interrupted else ""
+    counts = (
+        f"{len(result.replayed)} replayed, {len(result.unchanged)} unchanged, {len(result.failed)} failed"
+    )
+    print(f"logs: {counts}{interrupted}", file=sys.stderr)
+
+
+def _print_summary(result: FleetReplay, as_json: bool) -> None:
+    if not (result.folder / LOGS).is_dir():
+        return
+    robots, links = robots_of(result.folder), links_of(result.folder)
+    if as_json:
+        rows = {"robots": [row.to_dict() for row in robots], "links": [row.to_dict() for row in links]}
+        print(json.dumps(rows, allow_nan=False))
+        return
+    from rich.console import Console
+
+    from .fleet_tables import link_table, robot_table
+
+    console = Console()
+    console.print(robot_table(result.folder.name, robots))
+    if links:
+        console.print(link_table(links))

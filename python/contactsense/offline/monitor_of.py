@@ -1,0 +1,18 @@
+"""The monitor for a log."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+from ..errors import InputError
+from ..log import Log
+
+
+def monitor_of(log: Log, robot: _core.Robot, **arguments: Any) -> _core.ContactMonitor:
+    """A monitor at the rate of a log's rows; `arguments` are those of `ContactMonitor` but `dt`."""
+    if len(log) < 2:
+        raise InputError(f"log: has {len(log)} rows; at least 2 are wanted")
+    return _core.ContactMonitor(robot, dt=float(np.median(np.diff(log.time))), **arguments)
