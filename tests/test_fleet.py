@@ -23,7 +23,7 @@ import contactsense as cs
 from contactsense.cli.app import run
 from contactsense.fleet.one_log import Outcome
 from contactsense.fleet.settings import Settings
-from contactsense.fleet.summary import links_of, robots_of
+from contactsense.fleet.summary import links_of, places_of, robots_of
 
 MONITOR = {"torque_threshold": 0.6}
 LOGS = 4
@@ -170,7 +170,8 @@ from contactsense.fleet.engine import open_engine
 if __name__ == "__main__":
     folder = pathlib.Path({str(tmp_path)!r})
     with open_engine({engine!r}, test_fleet.ends, None, 2, None) as run:
-        outcomes = {{str(log): outcome.failure for log, outcome in run([pathlib.Path(name) for name in "bac"])}}
+        pairs = list(run([pathlib.Path(name) for name in "bac"]))
+    outcomes = {{str(log): outcome.failure for log, outcome in pairs}}
     (folder / "outcomes.json").write_text(json.dumps(outcomes))
 """
     file = tmp_path / "script.py"
@@ -306,3 +307,22 @@ def test_a_folder_is_one_log(logs: list[Path], tmp_path: Path) -> None:
     assert cs.replay_fleet([folder], arm(), found, monitor=MONITOR).unchanged == (folder,)
     os.utime(folder / "torque.csv", (1.0, 1.0))
     assert cs.replay_fleet([folder], arm(), found, monitor=MONITOR).replayed == (folder,)
+
+
+def test_pictures_are_drawn(logs: list[Path], tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    one, every = tmp_path / "one.png", tmp_path / "every.png"
+    assert run(["replay", str(logs[0]), "--robot", "iiwa14", "--threshold", "0.6", "--png", str(one)]) == 0
+    assert run(command(logs[:2], tmp_path / "found", "--engine", "local", "--png", str(every))) == 0
+    for picture in (one, every):
+        assert picture.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+        assert picture.stat().st_size > 10_000
+
+
+def test_places_are_those_of_the_contacts(whole: Path) -> None:
+    links, points, forces = places_of(whole, arm().name)
+    contacts = table(whole, "contacts").to_pylist()
+    found = sorted((row["link"], *row["point_local"], row["peak_force"]) for row in contacts)
+    assert sorted(zip(links, *points.T.tolist(), forces.tolist(), strict=True)) == found
+    assert len(links) == LOGS
+    assert places_of(whole, "another")[0] == []

@@ -30,6 +30,7 @@ def replay_in_parallel(
     engine: Engine,
     workers: int | None,
     address: str | None,
+    png: Path | None,
     as_json: bool,
 ) -> int:
     """Replays all logs, prints what was found so far in the whole data set, and gives the exit code."""
@@ -49,7 +50,12 @@ def replay_in_parallel(
             on_progress=show,
         )
     _print_faults(result)
-    _print_summary(result, as_json)
+    if (result.folder / LOGS).is_dir():
+        _print_summary(result.folder, as_json)
+        if png is not None:
+            from .fleet_picture import save_fleet_picture
+
+            save_fleet_picture(png, result.folder, name or robot.name, robot)
     if result.interrupted:
         return INTERRUPTED
     if result.failed:
@@ -68,10 +74,8 @@ def _print_faults(result: FleetReplay) -> None:
     print(f"logs: {counts}{interrupted}", file=sys.stderr)
 
 
-def _print_summary(result: FleetReplay, as_json: bool) -> None:
-    if not (result.folder / LOGS).is_dir():
-        return
-    robots, links = robots_of(result.folder), links_of(result.folder)
+def _print_summary(folder: Path, as_json: bool) -> None:
+    robots, links = robots_of(folder), links_of(folder)
     if as_json:
         rows = {"robots": [row.to_dict() for row in robots], "links": [row.to_dict() for row in links]}
         print(json.dumps(rows, allow_nan=False))
@@ -81,6 +85,6 @@ def _print_summary(result: FleetReplay, as_json: bool) -> None:
     from .fleet_tables import link_table, robot_table
 
     console = Console()
-    console.print(robot_table(result.folder.name, robots))
+    console.print(robot_table(folder.name, robots))
     if links:
         console.print(link_table(links))

@@ -11,6 +11,7 @@ import numpy as np
 import typer
 
 from .._extras import require
+from .._pictures import optional_picture
 from ..calibration import Calibration
 from ..errors import InputError
 from ..fleet.replay_fleet import Engine
@@ -56,6 +57,12 @@ def command(
             "--engine, for the data set of all logs."
         ),
     ] = None,
+    png: Annotated[
+        Path | None,
+        typer.Option(
+            help="Picture of where and when the robot was touched; of one log, or with --engine of all."
+        ),
+    ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print one JSON object a contact, a line each.")
     ] = False,
@@ -79,6 +86,9 @@ def command(
 ) -> None:
     """Find the contacts in logs: when, where and how hard."""
     require("cli", "rich")
+    if png is not None and len(logs) > 1 and engine is None:
+        raise InputError(f"png: is a picture of one log, and there are {len(logs)}")
+    png = optional_picture("png", png)
     arguments = monitor_arguments(calibration, threshold, gain, bias_time)
     if engine is not None:
         if out is None:
@@ -94,6 +104,7 @@ def command(
             engine=engine,
             workers=workers,
             address=address,
+            png=png,
             as_json=as_json,
         )
         raise typer.Exit(code)
@@ -109,6 +120,10 @@ def command(
         with progress_bar(path.name, as_json) as show:
             result = replay(log, monitor, on_progress=show)
         print_contacts(path, result, as_json)
+        if png is not None:
+            from .contact_picture import save_contact_picture
+
+            save_contact_picture(png, path.name, loaded, result)
         if out is not None:
             write(result, out / _stem(path) if len(logs) > 1 else out)
         if result.interrupted:

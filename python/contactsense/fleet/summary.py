@@ -73,6 +73,16 @@ def links_of(folder: str | os.PathLike[str]) -> list[LinkSummary]:
     return found
 
 
+def places_of(
+    folder: str | os.PathLike[str], robot: str
+) -> tuple[list[str], NDArray[np.float64], NDArray[np.float64]]:
+    """Links, points `(n, 3)` in their frames [m] and peak forces [N] of a robot's contacts with a point."""
+    contacts = _columns(folder, "contacts", "robot", "link", "point_local", "peak_force")
+    points = np.array(contacts["point_local"].tolist(), dtype=np.float64).reshape(-1, 3)
+    rows = (contacts["robot"] == robot) & np.all(np.isfinite(points), axis=1)
+    return contacts["link"][rows].tolist(), points[rows], contacts["peak_force"][rows]
+
+
 def _columns(folder: str | os.PathLike[str], table: str, *names: str) -> dict[str, NDArray[Any]]:
     import pyarrow as pa
     import pyarrow.dataset as ds
@@ -82,6 +92,6 @@ def _columns(folder: str | os.PathLike[str], table: str, *names: str) -> dict[st
     data = ds.dataset(Path(folder) / table, partitioning=names_of_robots, format="parquet")
     found = data.to_table(columns=list(names))
     return {
-        name: np.array(column.to_pylist()) if pa.types.is_string(column.type) else column.to_numpy()
+        name: column.to_numpy() if pa.types.is_primitive(column.type) else np.array(column.to_pylist())
         for name, column in zip(names, found.columns, strict=True)
     }

@@ -9,7 +9,7 @@ use super::posterior::{ContactPosterior, LinkProbability};
 use super::report::LINE_UNKNOWNS;
 use super::result::{Contact, ContactPlace, Isolation};
 use crate::error::Result;
-use crate::map::{MapOptions, Measurement, Summary, SurfacePosterior};
+use crate::map::{MapOptions, Measurement, Summary, SurfacePosterior, GREATEST_FORCE};
 use crate::posterior::{Mode, MOST_MODES};
 use crate::robot::{Kinematics, LinkIndex, Robot};
 use crate::sensor::SensorTree;
@@ -23,6 +23,11 @@ const EXACT: f64 = 1e-6;
 const LOST: f64 = 20.5;
 /// A normal force is determined if it exceeds so many standard deviations.
 const DETERMINED: f64 = 2.0;
+/// A force across the normal is likely if it does not exceed so many of its standard deviations beforehand: 99 % of a
+/// chi-square of two unknowns, squared.
+const LIKELY: f64 = 3.0;
+/// A force at the posterior's middle is not told where it is so many times as large as the mean over the posterior.
+const TYPICAL: f64 = 2.0;
 /// A closed form gives a contact's point if that is not farther from the posterior's than its region's radius, or this (m).
 const AGREES: f64 = 0.01;
 
@@ -151,14 +156,19 @@ impl SurfaceContact {
         self.now.set_on(link, &self.robot, now.kinematics, now.torque, now.deviation);
         let (frame, target) = (&self.now.frames().links[link], self.now.target().on(link));
         let outward = place.pushed_normal();
-        let best =
-            BestForce::of(frame, target, ForceModel::FrictionCone(self.friction), &place.point, &outward);
+        let model = ForceModel::FrictionCone(self.friction);
+        let best = BestForce::beside_friction(frame, target, model, &place.point, &outward)?;
         if best.normal <= DETERMINED * best.variance.sqrt() {
             return None;
         }
         let directions = directions(&outward);
         let (gram, products) = frame.responses(&place.point, &directions, target);
         let parts = best_cone_force(&gram, &products, self.friction).force;
+        // Torques that hardly tell apart two forces can be explained by large ones that cancel.
+        let likely = LIKELY * model.deviation_across(best.normal).unwrap_or_default();
+        if parts.y.hypot(parts.z) > likely {
+            return Some(best.force);
+        }
         Some(directions[0] * parts.x + directions[1] * parts.y + directions[2] * parts.z)
     }
 
@@ -238,6 +248,10 @@ impl SurfaceContact {
             contact
         });
         let mut contact = kept.unwrap_or_else(|| self.contact(now, &place, explained));
+        let exact = contact.verified && is_exact(isolation.residual, now.torque);
+        if !sure && !exact && contact.force().is_some_and(|force| depends_on_place(&force, &place)) {
+            contact.wrench = None;
+        }
         contact.located = sure;
         contact.posterior = Some(self.describe(now, &place, region_radius, isolation));
         isolation.contacts.clear();
@@ -309,6 +323,12 @@ impl SurfaceContact {
             link_probabilities: 0..isolation.link_probabilities.len(),
         }
     }
+}
+
+/// Whether a force at the posterior's middle says little of those at other places that are as likely: there it has a shorter
+/// lever than elsewhere, and is larger.
+fn depends_on_place(force: &Vector3<f64>, place: &Mode) -> bool {
+    force.norm() > (TYPICAL * place.force.norm()).min(GREATEST_FORCE)
 }
 
 /// Whether what contacts leave over of a torque is rounding.

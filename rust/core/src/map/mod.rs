@@ -19,3 +19,4 @@ pub use contact_map::ContactMap;
 pub use estimate::MapEstimate;
 pub use identifiability::Identifiability;
 pub use options::MapOptions;
+pub(crate) use options::GREATEST_FORCE;

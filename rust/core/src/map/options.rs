@@ -46,7 +46,8 @@ impl Default for MapOptions {
 }
 
 /// A contact's normal force lies between these (N): from what the best torque sensors show to what stops a robot.
-const FORCES: [f64; 2] = [2.0, 300.0];
+const LEAST_FORCE: f64 = 2.0;
+pub(crate) const GREATEST_FORCE: f64 = 300.0;
 /// As many samples at most.
 const MOST_SAMPLES: usize = 1_000_000;
 
@@ -73,6 +74,6 @@ impl MapOptions {
     }
 
     pub(super) fn prior(&self) -> ForcePrior {
-        ForcePrior::new(self.friction, FORCES, self.pull_probability)
+        ForcePrior::new(self.friction, [LEAST_FORCE, GREATEST_FORCE], self.pull_probability)
     }
 }

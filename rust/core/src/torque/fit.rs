@@ -62,17 +62,35 @@ impl BestForce {
         point: &Vector3<f64>,
         normal: &Vector3<f64>,
     ) -> BestForce {
+        let bare = BestForce::without_friction(frame, target, point, normal);
+        BestForce::beside_friction(frame, target, force_model, point, normal).unwrap_or(bare)
+    }
+
+    /// The same, but none where forces across the normal explain the torques without a push.
+    pub fn beside_friction(
+        frame: &Frame,
+        target: &LinkTarget,
+        force_model: ForceModel,
+        point: &Vector3<f64>,
+        normal: &Vector3<f64>,
+    ) -> Option<BestForce> {
+        let bare = BestForce::without_friction(frame, target, point, normal);
+        let Some(deviation) = force_model.deviation_across(bare.normal) else { return Some(bare) };
+        let directions = directions(normal);
+        let (gram, products) = frame.responses(point, &directions, target);
+        BestForce::with_friction(gram, &products, &directions, deviation)
+    }
+
+    /// Along the normal alone.
+    fn without_friction(
+        frame: &Frame,
+        target: &LinkTarget,
+        point: &Vector3<f64>,
+        normal: &Vector3<f64>,
+    ) -> BestForce {
         let (gain, product) = frame.response(point, normal, target);
         let size = if gain > 0.0 && product > 0.0 { product / gain } else { 0.0 };
-        let variance = gain.recip();
-        let bare = BestForce { force: -normal * size, normal: size, variance, across: [0.0; 2] };
-        let deviation = force_model.deviation_across(size);
-        let with_friction = |deviation| {
-            let directions = directions(normal);
-            let (gram, products) = frame.responses(point, &directions, target);
-            BestForce::with_friction(gram, &products, &directions, deviation)
-        };
-        deviation.and_then(with_friction).unwrap_or(bare)
+        BestForce { force: -normal * size, normal: size, variance: gain.recip(), across: [0.0; 2] }
     }
 
     /// Where the part across the normal is Gaussian with this standard deviation [N].
