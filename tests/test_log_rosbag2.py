@@ -64,20 +64,72 @@ def test_many_topics_and_odd_times(tmp_path):
     assert [t.received.item() for t in found.tables] == [time * 1e-9 for _, _, time, _ in given]
 
 
-def test_rows_that_wait_in_a_journal_are_told_of(tmp_path):
-    """As a recorder leaves them that was killed."""
-    path = write_sqlite(tmp_path / "a.db3", messages("cdr"))
+def killed_recorder(folder, given, page_size=4096, pages=10**6):
+    """Copies of file and log of a recorder that is killed: of most rows, only the log has them."""
+    path = write_sqlite(folder / "open.db3", given[:20], page_size)
     base = sqlite3.connect(path)
     base.execute("PRAGMA journal_mode=WAL")
-    base.execute("UPDATE messages SET timestamp = timestamp + 1")
+    base.execute(f"PRAGMA wal_autocheckpoint={pages}")
+    other = write_sqlite(folder / "other.db3", given, page_size)
+    base.execute("ATTACH ? AS other", (str(other),))
+    for first in range(0, len(given), 7):  # a few rows at a time
+        base.execute(
+            "INSERT INTO main.messages SELECT * FROM other.messages WHERE id > ? AND id <= ? AND id > 20",
+            (first, first + 7),
+        )
+        base.commit()
+    base.execute("INSERT OR IGNORE INTO main.topics SELECT * FROM other.topics")
     base.commit()
-    found = rosbag2_sqlite.read(path)
+    killed = folder / "killed"
+    killed.mkdir()
+    copies = [killed / "a.db3", killed / "a.db3-wal"]
+    copies[0].write_bytes(path.read_bytes())
+    copies[1].write_bytes(path.with_name("open.db3-wal").read_bytes())
     base.close()
-    assert rows_of(found) == 80
-    rows = sum(t.rows for t in found.tables)
-    assert found.damage == (
-        f"a.db3: the rows that wait in a.db3-wal are not read; {rows} messages were read before",
-    )
+    return other, *copies
+
+
+@pytest.mark.parametrize("page_size", [512, 4096])
+@pytest.mark.parametrize("pages", [4, 10**6])
+def test_rows_that_wait_in_the_log_are_read(pages, page_size, tmp_path):
+    other, path, log = killed_recorder(tmp_path, messages("cdr"), page_size, pages)
+    assert log.stat().st_size > 0
+    before = path.read_bytes(), log.read_bytes()
+    found = rosbag2_sqlite.read(path)
+    assert found.damage == ()
+    same(found, rosbag2_sqlite.read(other))
+    assert (path.read_bytes(), log.read_bytes()) == before
+    assert sorted(p.name for p in path.parent.iterdir()) == ["a.db3", "a.db3-wal"]
+
+
+def test_a_cut_log_gives_what_was_committed_before(tmp_path):
+    _, path, log = killed_recorder(tmp_path, messages("cdr"), PAGE)
+    whole = log.read_bytes()
+    # As many rows as SQLite itself finds, which is that of the last commit before the cut.
+    counts = []
+    for end in np.random.default_rng(5).integers(0, len(whole), 30):
+        log.write_bytes(whole[:end])
+        found = rosbag2_sqlite.read(path)
+        copy = tmp_path / f"copy{end}.db3"
+        copy.write_bytes(path.read_bytes())
+        copy.with_name(copy.name + "-wal").write_bytes(whole[:end])
+        base = sqlite3.connect(copy)
+        joints = "SELECT count(*) FROM messages JOIN topics t ON t.id = topic_id WHERE name = '/joint_states'"
+        assert rows_of(found) == base.execute(joints).fetchone()[0]
+        base.close()
+        counts.append(rows_of(found))
+    assert len(set(counts)) > 5
+
+
+def test_mutated_logs_end_in_typed_errors(tmp_path):
+    _, path, log = killed_recorder(tmp_path, messages("cdr"), PAGE)
+    whole, rng = log.read_bytes(), np.random.default_rng(29)
+    rows = []
+    for _ in range(MUTATIONS):
+        log.write_bytes(mutated(rng, whole))
+        rows.append(rows_of(rosbag2_sqlite.read(path)))
+    # Most of the rows outlive most of the changes.
+    assert np.median(rows) > 40
 
 
 def test_deleted_rows_do_not_come_back(tmp_path):

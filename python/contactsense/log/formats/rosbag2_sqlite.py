@@ -33,7 +33,7 @@ def add(path: Path, collector: Collector) -> None:
     """Reads one part of a bag."""
     with mapped(path, collector.damage) as data:
         try:
-            database = Database(data)
+            database = Database(data, _log_of(path))
         except PageError:
             raise InputError(f"{path.name}: must be an SQLite file") from None
         _File(path, database, collector).read()
@@ -64,9 +64,8 @@ class _File:
             where = f"page {min(broken)}" if broken else "its last page"
             size = f"{self.database.pages} pages of {self.database.page_size} bytes"
             self.collector.broken(f"{self.path.name}: is cut or broken at {where} ({size})")
-        log = self.path.with_name(self.path.name + "-wal")
-        if log.exists() and log.stat().st_size:
-            self.collector.broken(f"{self.path.name}: the rows that wait in {log.name} are not read")
+        if self.database.is_log_cut:
+            self.collector.broken(f"{_log_of(self.path).name}: is cut or broken after its last whole rows")
 
     def _topics(self, roots: dict[str, int], broken: list[int]) -> None:
         definitions: dict[str, tuple[str, str]] = {}
@@ -87,11 +86,17 @@ class _File:
         """Leaf pages that no readable page leads to: their rows tell whether they are messages."""
         rows, self.rows = set(self.rows), array("q")
         for number in range(2, self.database.pages + 1):
-            if number not in read and self.database.data[(number - 1) * self.database.page_size] == LEAF:
+            if number not in read and self._is_leaf(number):
                 self._leaf(number, [], rows)
 
+    def _is_leaf(self, number: int) -> bool:
+        try:
+            return self.database.page(number)[0] == LEAF
+        except PageError:
+            return False
+
     def _leaf(self, number: int, broken: list[int], known: set[int] | None = None) -> None:
-        page, usable, end = self.database.page(number), self.database.usable, len(self.database.data)
+        page, usable, end = self.database.page(number), self.database.usable, self.database.size
         channels, rows = self.channels, self.rows
         for at in self.database.cells(page, 100 if number == 1 else 0):
             try:
@@ -121,6 +126,11 @@ class _File:
         if [type(value) for value in values[1:]] != [int, int, bytes]:
             raise PageError("a row is not a message")
         return row, values[1], values[2], values[3]
+
+
+def _log_of(path: Path) -> Path:
+    """Where SQLite keeps the pages that it has not yet written to a file."""
+    return path.with_name(path.name + "-wal")
 
 
 def _is_table(row: list[Any]) -> bool:

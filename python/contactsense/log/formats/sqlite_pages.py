@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import mmap
 from collections.abc import Iterator
+from pathlib import Path
 from struct import unpack_from
 from typing import Any
 
 from .sqlite_rows import PageError, record, varint
+from .sqlite_wal import WaitingPages, waiting_pages
 
 MAGIC = b"SQLite format 3\0"
 INTERIOR, LEAF = 0x05, 0x0D  # pages of tables
@@ -18,10 +20,10 @@ MAX_PAYLOAD = 2**28  # bytes of one row; a message of a robot's state has hundre
 
 
 class Database:
-    """The pages of one file."""
+    """The pages of one file, and those that wait in its write-ahead log."""
 
-    def __init__(self, data: mmap.mmap) -> None:
-        self.data = data
+    def __init__(self, data: mmap.mmap, log: Path | None = None) -> None:
+        self._data = data
         size = int.from_bytes(data[16:18], "big")
         self.page_size = 65536 if size == 1 else size
         if data[:16] != MAGIC or self.page_size < 512 or self.page_size & (self.page_size - 1):
@@ -29,17 +31,31 @@ class Database:
         self.usable = self.page_size - data[20]
         if self.usable < 480:
             raise PageError("no head of SQLite")
+        self._waiting = WaitingPages() if log is None else waiting_pages(log, self.page_size)
+        self.is_log_cut = self._waiting.is_cut
+        # Bytes of all pages.
+        self.size = len(data) + self.page_size * len(self._waiting.pages)
         # Rows are read at most twice; rows that share bytes would have no end.
-        self.left = 2 * len(data)
-        self.pages = -(-len(data) // self.page_size)
-        said = int.from_bytes(data[28:32], "big")
-        self.is_cut = len(data) % self.page_size != 0 or (said > self.pages and data[24:28] == data[92:96])
+        self._left = 2 * self.size
+        in_file = -(-len(data) // self.page_size)
+        self.pages = max(in_file, self._waiting.count)
+        head = self.page(1)
+        said = int.from_bytes(head[28:32], "big")
+        lacks = said > in_file and any(
+            number not in self._waiting.pages for number in range(in_file + 1, said + 1)
+        )
+        is_torn = len(data) % self.page_size != 0 and in_file not in self._waiting.pages
+        self.is_cut = is_torn or (lacks and head[24:28] == head[92:96])
 
     def page(self, number: int) -> bytes:
         """The page, or what is left of it where the cut goes through it."""
-        if not 1 <= number <= self.pages:
+        waiting = self._waiting.pages.get(number)
+        if waiting is not None:
+            return waiting
+        page = self._data[(number - 1) * self.page_size : number * self.page_size] if number > 0 else b""
+        if not page:
             raise PageError(f"page {number} is not there")
-        return self.data[(number - 1) * self.page_size : number * self.page_size]
+        return page
 
     def leaves(self, root: int, broken: list[int]) -> Iterator[int]:
         """Leaf pages of a table in the order of its rows; pages that cannot be followed go into `broken`."""
@@ -77,8 +93,8 @@ class Database:
             row, at = varint(page, at)
         except IndexError:
             raise PageError("a row begins outside its page") from None
-        self.left -= size
-        if self.left < 0:
+        self._left -= size
+        if self._left < 0:
             raise PageError("the rows are larger than the file")
         if size <= self.usable - 35:
             if at + size > len(page):
@@ -94,11 +110,12 @@ class Database:
         parts, left = [page[at : at + local]], size - local
         following = int.from_bytes(page[at + local : at + local + 4], "big")
         while left > 0:
-            start, take = (following - 1) * self.page_size, min(left, self.usable - 4)
-            if following < 1 or start + 4 + take > len(self.data):
+            take = min(left, self.usable - 4)
+            part = self.page(following)
+            if 4 + take > len(part):
                 raise PageError("a row goes on in a page that is not there")
-            parts.append(self.data[start + 4 : start + 4 + take])
-            following = int.from_bytes(self.data[start : start + 4], "big")
+            parts.append(part[4 : 4 + take])
+            following = int.from_bytes(part[:4], "big")
             left -= take
         return row, b"".join(parts)
 
