@@ -107,8 +107,9 @@ def _behind_silent_joint(name: str, robot: cs.Robot, model: Any, limit: float, p
         monitor = cs.ContactMonitor(robot, dt=DT, torque_threshold=THRESHOLD)
         for _ in range(SETTLED):
             report = monitor.update(q, v, tau)
-        assert report.contacts[0].located
         assert report.contacts[0].link == link
+        # The noise that thresholds stand for leaves some of the places open, but not the force.
+        assert abs(np.linalg.norm(report.contacts[0].force) - FORCE) < 0.02 * FORCE
         names = {"q": q, "v": v, "tau": tau, "update": monitor.update}
         runs.append(interleave([Contestant("contactsense", HOLD, names)], pace))
     slowest = max(runs, key=lambda run: run[0].median)
