@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test lint types rust-test python-test shared-test bench clean toolchain install studies wheel-check
+.PHONY: demo test lint types rust-test python-test shared-test bench docs clean toolchain install studies wheel-check
 
 demo: GROUP :=
 demo: install
@@ -46,6 +46,11 @@ bench: GROUP := bench
 bench: install
 	cargo bench --workspace
 	$(BIN)/python -m benches.compare
+
+# The documentation as a site, in build/site.
+docs: GROUP := docs
+docs: install
+	$(BIN)/python -m sphinx -q -W --keep-going -b html docs build/site
 
 # Says which version is missing, before anything is built.
 toolchain:

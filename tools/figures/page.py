@@ -13,6 +13,9 @@ Each table of measured figures, the command that measures it, and what it was me
 `python -m tools.figures run NAME` measures one anew; this page and the tables are written from
 `docs/figures.json`. DIR holds the logs that `python -m contactsense_studies.franka_touch.convert` makes."""
 
+# The site of the pages does not have what is outside their folder.
+SOURCE = "https://github.com/contactsense/contactsense/blob/main/"
+
 
 def render(records: dict[str, Any]) -> str:
     """The page."""
@@ -26,7 +29,7 @@ def _section(figure: Figure, record: dict[str, Any]) -> str:
     if figure.page == "docs/figures.md":
         parts.append(f"<!-- figures: {figure.name} -->\n{record['table']}\n<!-- end -->")
     else:
-        link = figure.page.removeprefix("docs/") if figure.page.startswith("docs/") else f"../{figure.page}"
+        link = figure.page.removeprefix("docs/") if figure.page.startswith("docs/") else SOURCE + figure.page
         parts.append(f"The table is in [{figure.page}]({link}).")
     parts.append(_provenance(record))
     return "\n\n".join(parts)
