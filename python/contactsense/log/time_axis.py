@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from .choice import listing
 from .joint_names import words
-from .recording import Column, Recording, Table
+from .recording import Column, Recording, Table, listing
 
 # In this order.
 _NAMES = (

@@ -1,0 +1,197 @@
+"""Pose and velocity of a floating base at the times of the joints."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..errors import InputError
+from .base_columns import ANGULAR, ORIENTATION, BaseColumns, base_columns, child_frame
+from .base_frames import carried_links, is_base, told_axes
+from .choice import Group
+from .components import Block
+from .formats.messages import BASE_KINDS
+from .held import Extra, Series, series_of
+from .quantities import CURRENT, EXTERNAL, TORQUE
+from .quaternions import continuous, inverse, of_matrix, product, rotated, rotation_vectors
+from .recording import Recording
+from .resample import QUATERNION, differences, neighbours
+from .time_axis import TimeAxis
+
+Rows = NDArray[np.float64]
+
+POSITION, TWIST = "base position", "base twist"
+# A quaternion shorter than this is none, but a message that was not filled.
+_SHORTEST = 1e-3
+_REST = "position and linear velocity of the base are zero: exact only while the base does not accelerate"
+
+
+def base_rows(
+    recording: Recording,
+    robot: _core.Robot,
+    columns: Mapping[str, str | Sequence[str]],
+    axis: TimeAxis,
+    time_column: str | None,
+) -> Extra:
+    """Position, quaternion and twist of the base at the times of the joints: the last ones by then.
+
+    Raises:
+        InputError: nothing says where the base is, or several do.
+    """
+    links = carried_links(robot)
+    own = {name: is_base(place) for name, place in links.items()}
+    found = base_columns(recording, robot, own, columns)
+    extra = Extra.none(axis)
+    poses = _poses(series_of(recording, found.pose, time_column), found.pose, extra)
+    place, note = _place(found.pose, links, robot)
+    twist = _twists(recording, found, poses, [name for name in own if own[name]], time_column, extra)
+    extra.chosen.insert(0, f"pose of the base from {found.pose.title}{note}")
+    if found.pose.kind is ORIENTATION:
+        extra.chosen.insert(1, _REST)
+        place[:3, 3] = 0.0
+    pose_rows, present = poses.at(axis)
+    twist_rows, moving = twist.at(axis)
+    extra.known &= present & moving
+    if not np.any(extra.known):
+        raise InputError(f"columns: no pose of the base by the last row ({found.pose.title})")
+    extra.values |= _of_base(pose_rows, twist_rows, place)
+    used = [found.pose.table, found.pose.table if found.twist is None else found.twist.table]
+    others = [it for it in recording.tables if it.kind in BASE_KINDS and not any(it is one for one in used)]
+    extra.left_out += [f"{table.name} ({table.kind}): the base is known without it" for table in others]
+    return extra
+
+
+def left_out_by_base(recording: Recording, groups: dict[str, Group], floats: bool) -> list[str]:
+    """Lines on what a log of a robot with a base of this kind leaves out; takes it from the groups.
+
+    Raises:
+        InputError: nothing is left of the torques.
+    """
+    if not floats:
+        others = [table for table in recording.tables if table.kind in BASE_KINDS]
+        names = dict.fromkeys(f"{table.name} ({table.kind})" for table in others)
+        return [f"{name}: no measurements of joints or forces" for name in names]
+    if EXTERNAL not in groups:
+        return []
+    if len({TORQUE, EXTERNAL, CURRENT} & set(groups)) == 1:
+        raise InputError(
+            f"columns: {groups[EXTERNAL].title} has nothing of the floating base; torques of the motors are "
+            "needed"
+        )
+    return [f"{groups.pop(EXTERNAL).title}: has nothing of the floating base"]
+
+
+def write_base(q: Rows, v: Rows, values: Mapping[str, Rows]) -> None:
+    """Writes the base's part of configurations `(n, nq)` and velocities `(n, nv)`."""
+    q[:, :3], q[:, 3:7], v[:, :6] = values[POSITION], values[QUATERNION], values[TWIST]
+
+
+def _poses(series: Series, block: Block, extra: Extra) -> Series:
+    """Rows of position and quaternion; without those whose quaternion is of length zero."""
+    whole = np.linalg.norm(series.values[:, -4:], axis=1) > _SHORTEST
+    empty = int(np.count_nonzero(~whole))
+    if empty:
+        extra.mended.append(f"{empty} quaternions of the base of length zero left out")
+    if series.missing:
+        extra.mended.append(
+            f"{series.missing} poses of the base are missing; the last one before each is kept"
+        )
+    values = series.values[whole]
+    if len(values) < 2:
+        raise InputError(f"columns: {len(values)} poses of the base are complete ({block.title})")
+    position = values[:, :3] if values.shape[1] == len(block.kind.order) == 7 else np.zeros((len(values), 3))
+    return replace(
+        series, time=series.time[whole], values=np.column_stack([position, continuous(values[:, -4:])])
+    )
+
+
+def _place(block: Block, links: Mapping[str, Rows], robot: _core.Robot) -> tuple[Rows, str]:
+    """The pose, in the frame of the base, of the frame that is measured; and what is to be said of it."""
+    frame = child_frame(block)
+    known = next((it for it in (frame, frame.rpartition("/")[2]) if it in links), None)
+    if known is not None:
+        note = "" if is_base(links[known]) else f", which is that of '{known}', moved to the base"
+        return links[known].copy(), note
+    if frame in robot.all_link_names:
+        raise InputError(f"columns: {block.title} is the pose of '{frame}', which moves against the base")
+    return np.eye(4), f"; the robot has no frame '{frame}', which is taken as the base" if frame else ""
+
+
+def _twists(
+    recording: Recording,
+    found: BaseColumns,
+    poses: Series,
+    base: Sequence[str],
+    time_column: str | None,
+    extra: Extra,
+) -> Series:
+    """Linear and angular velocity in the axes of the frame that is measured."""
+    own = replace(poses, values=_differences(poses))
+    block = found.twist
+    if block is None:
+        extra.chosen.append("velocity of the base: central differences of its pose")
+        return own
+    series = series_of(recording, block, time_column)
+    at_rest = np.zeros((len(series.values), 6 - series.values.shape[1]))
+    values = np.column_stack([at_rest, series.values])
+    pose_rows, known = poses.at(series)
+    expected, _ = own.at(series)
+    kept = known if np.any(known) else np.zeros(len(values), dtype=bool)
+    values, quaternions, expected = values[kept], pose_rows[kept, 3:], expected[kept]
+    axes = {}
+    for name, part in (("linear", slice(0, 3)), ("angular", slice(3, 6))):
+        told = _named_axes(block, found.pose, base) or told_axes(
+            values[:, part], expected[:, part], quaternions
+        )
+        if told == "world":
+            values[:, part] = rotated(inverse(quaternions), values[:, part])
+        axes[name] = told
+    if not all(axes.values()) or not len(values):
+        extra.chosen.append("velocity of the base: central differences of its pose")
+        extra.left_out.append(f"velocity {block.title}: fits the differences of the pose in no axes")
+        return own
+    where = " and ".join(f"{name} in axes of the {told}" for name, told in axes.items())
+    where = "" if block.kind is ANGULAR else f", {where}"
+    extra.chosen.append(f"velocity of the base from {block.title}{where} [m/s, rad/s]")
+    return replace(series, time=series.time[kept], values=values)
+
+
+def _named_axes(block: Block, pose: Block, base: Sequence[str]) -> str:
+    """The axes of a twist where its messages name them."""
+    if block.kind is ANGULAR and block.table is pose.table:
+        return "base"
+    if block.table.kind == "nav_msgs/msg/Odometry":
+        return "base"
+    frame = block.frame
+    if not frame:
+        return ""
+    if frame in base or frame == child_frame(pose):
+        return "base"
+    return "world" if frame == pose.frame and pose.table.kind else ""
+
+
+def _differences(poses: Series) -> Rows:
+    """Twist in axes of the moving frame, by central differences of its pose."""
+    quaternions = poses.values[:, 3:]
+    before, after = neighbours(poses.time)
+    turn = rotation_vectors(product(inverse(quaternions[before]), quaternions[after]))
+    linear = rotated(inverse(quaternions), differences(poses.time, poses.values[:, :3]))
+    return np.column_stack([linear, turn / (poses.time[after] - poses.time[before])[:, None]])
+
+
+def _of_base(poses: Rows, twists: Rows, place: Rows) -> dict[str, Rows]:
+    """From the measured frame, which is at `place` in the base's, to the base."""
+    turn, offset = of_matrix(place[:3, :3]), place[:3, 3]
+    quaternions = product(poses[:, 3:], inverse(turn))
+    position = poses[:, :3] - rotated(quaternions, np.broadcast_to(offset, (len(poses), 3)))
+    angular = rotated(turn, twists[:, 3:])
+    linear = rotated(turn, twists[:, :3]) - np.cross(angular, offset)
+    return {
+        POSITION: position,
+        QUATERNION: continuous(quaternions),
+        TWIST: np.column_stack([linear, angular]),
+    }

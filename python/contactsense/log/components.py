@@ -1,0 +1,162 @@
+"""Columns that are the components of a force, a pose or a velocity, by their names."""
+
+from __future__ import annotations
+
+import fnmatch
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from ..errors import InputError
+from .joint_names import Tokens, words
+from .quantities import NOT_MEASURED
+from .recording import Recording, Table, listing
+
+# Units that the name of a component may end in.
+_UNITS = frozenset({"n", "nm", "m", "rad", "s"})
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A quantity of several components.
+
+    Args:
+        name: for messages.
+        order: the components.
+        phrases: the component that words of a name mean.
+    """
+
+    name: str
+    order: tuple[str, ...]
+    phrases: Mapping[Tokens, str]
+
+    def component(self, name: Tokens) -> tuple[str, Tokens] | None:
+        """The component that a name tells, and the words of the name that are left."""
+        for length in range(max(map(len, self.phrases)), 0, -1):
+            for first in range(len(name) - length, -1, -1):
+                found = self.phrases.get(name[first : first + length])
+                if found is not None:
+                    return found, name[:first] + name[first + length :]
+        return None
+
+
+def phrases(**parts: str) -> dict[Tokens, str]:
+    """Of `fx="f, force"`: which words mean the component `fx`, both as `force x` and as `fx`.
+
+    The last letter of a component is its axis. A vector without a name, written as "-", is the axis alone.
+    """
+    found: dict[Tokens, str] = {}
+    for part, vectors in parts.items():
+        axis = part[-1]
+        for vector in vectors.split(","):
+            before = words(vector)
+            found[(*before, axis)] = part
+            if len(before) == 1 and len(before[0]) == 1:
+                found[before[0] + axis,] = part
+    return found
+
+
+_FORCE, _MOMENT = "force, f, frc", "torque, moment, t, m, tau, trq"
+WRENCH = Kind(
+    "wrench",
+    ("fx", "fy", "fz", "mx", "my", "mz"),
+    phrases(fx=_FORCE, fy=_FORCE, fz=_FORCE, mx=_MOMENT, my=_MOMENT, mz=_MOMENT),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """The columns of one table that are the components of one quantity.
+
+    Args:
+        kind: of quantity.
+        table: the table.
+        columns: in the order of the kind's components.
+        stem: the words that the names have in common.
+    """
+
+    kind: Kind
+    table: Table
+    columns: tuple[str, ...]
+    stem: Tokens
+
+    @property
+    def words(self) -> Tokens:
+        """All words that tell whose it is: of the topic or table, and of the columns."""
+        return (*words(self.table.name), *self.stem)
+
+    @property
+    def frame(self) -> str:
+        """The frame of its messages; empty where it is not known."""
+        frames = self.table.frames.get("header.frame_id", ())
+        return frames[0].strip("/") if len(frames) == 1 else ""
+
+    @property
+    def title(self) -> str:
+        """For messages."""
+        frame = f" (frame '{self.frame}')" if self.frame else ""
+        return f"'{self.columns[0]}' to '{self.columns[-1]}' of {self.table.name}{frame}"
+
+
+def blocks(tables: Sequence[Table], kind: Kind) -> list[Block]:
+    """All complete ones; what was asked for, and not measured, is none."""
+    measured = [table for table in tables if not (table.kind and NOT_MEASURED & set(words(table.name)))]
+    return [block for table in measured for block in _of_columns(table, kind, _measured(table.columns))]
+
+
+def named_block(recording: Recording, kinds: Sequence[Kind], given: str | Sequence[str], what: str) -> Block:
+    """The one that the user names: by its topic, by a pattern with `*` for the component, or by all columns.
+
+    Of several kinds, the first that is there.
+
+    Raises:
+        InputError: there is none, or several.
+    """
+    for kind in kinds:
+        found = [block for table in recording.tables for block in _named(table, kind, given)]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            titles = "; ".join(block.title for block in found)
+            raise InputError(f"{what}: several fit {given!r}: {titles}; name the columns of one of them")
+    raise InputError(
+        f"{what}: nothing that {given!r} names has the {len(kinds[0].order)} components of a "
+        f"{kinds[0].name}, {', '.join(kinds[0].order)}; there are {listing(recording)}"
+    )
+
+
+def _named(table: Table, kind: Kind, given: str | Sequence[str]) -> list[Block]:
+    if not isinstance(given, str):
+        whole = len(given) == len(kind.order) and set(given) <= set(table.columns)
+        return [Block(kind, table, tuple(given), ())] if whole else []
+    if given == table.name:
+        return _of_columns(table, kind, list(table.columns))
+    before, star, after = given.partition("*")
+    pattern = given.replace("[", "[[]")
+    matching = [name for name in table.columns if star and fnmatch.fnmatchcase(name, pattern)]
+    numbers = {name[len(before) : len(name) - len(after)]: name for name in matching}
+    in_order = sorted(filter(str.isdecimal, numbers), key=int)
+    if len(in_order) == len(numbers) == len(kind.order):
+        return [Block(kind, table, tuple(numbers[number] for number in in_order), ())]
+    return _of_columns(table, kind, matching)
+
+
+def _measured(columns: Iterable[str]) -> list[str]:
+    return [column for column in columns if not NOT_MEASURED & set(words(column))]
+
+
+def _of_columns(table: Table, kind: Kind, columns: Sequence[str]) -> list[Block]:
+    found: dict[Tokens, dict[str, str]] = {}
+    twice: set[Tokens] = set()
+    for column in columns:
+        name = words(column)
+        told = kind.component(name)
+        if told is not None:
+            part, stem = told
+            stem = stem[:-1] if name[-1] in _UNITS else stem
+            twice |= {stem} if part in found.get(stem, {}) else set()
+            found.setdefault(stem, {})[part] = column
+    return [
+        Block(kind, table, tuple(parts[part] for part in kind.order), stem)
+        for stem, parts in found.items()
+        if len(parts) == len(kind.order) and stem not in twice
+    ]
