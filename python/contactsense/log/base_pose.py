@@ -185,6 +185,8 @@ def _differences(poses: Series) -> Rows:
 
 def _of_base(poses: Rows, twists: Rows, place: Rows) -> dict[str, Rows]:
     """From the measured frame, which is at `place` in the base's, to the base."""
+    if is_base(place):
+        return {POSITION: poses[:, :3], QUATERNION: poses[:, 3:], TWIST: twists}
     turn, offset = of_matrix(place[:3, :3]), place[:3, 3]
     quaternions = product(poses[:, 3:], inverse(turn))
     position = poses[:, :3] - rotated(quaternions, np.broadcast_to(offset, (len(poses), 3)))

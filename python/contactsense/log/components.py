@@ -11,6 +11,9 @@ from .joint_names import Tokens, words
 from .quantities import NOT_MEASURED
 from .recording import Recording, Table, listing
 
+_AXES = "xyz"
+# Of the number of a component.
+_DIGITS = 9
 # Units that the name of a component may end in.
 _UNITS = frozenset({"n", "nm", "m", "rad", "s"})
 
@@ -23,14 +26,25 @@ class Kind:
         name: for messages.
         order: the components.
         phrases: the component that words of a name mean.
+        numbered: words after which numbers from 0 on are the components in order.
     """
 
     name: str
     order: tuple[str, ...]
     phrases: Mapping[Tokens, str]
+    numbered: frozenset[str] = frozenset()
 
     def component(self, name: Tokens) -> tuple[str, Tokens] | None:
         """The component that a name tells, and the words of the name that are left."""
+        if len(name) > 1 and name[-1].isdecimal():
+            number = int(name[-1][:_DIGITS])
+            if name[-2] in self.numbered and number < len(self.order):
+                return self.order[number], name[:-1]
+            if number < len(_AXES):  # of an array of a vector
+                axis = (*name[:-1], _AXES[number])
+                for first in range(len(name) - 1):
+                    if axis[first:] in self.phrases:
+                        return self.phrases[axis[first:]], name[:first]
         for length in range(max(map(len, self.phrases)), 0, -1):
             for first in range(len(name) - length, -1, -1):
                 found = self.phrases.get(name[first : first + length])
@@ -60,6 +74,7 @@ WRENCH = Kind(
     "wrench",
     ("fx", "fy", "fz", "mx", "my", "mz"),
     phrases(fx=_FORCE, fy=_FORCE, fz=_FORCE, mx=_MOMENT, my=_MOMENT, mz=_MOMENT),
+    frozenset({"wrench", "ft", "fts"}),
 )
 
 
