@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
-from log_files import named_columns
+import pytest
+from log_files import named_columns, write_csv
 
 import contactsense as cs
 
@@ -94,3 +96,21 @@ def assert_same_motion(log: cs.Log, expected: cs.Log, q: float = 1e-12, v: float
     gap = np.array([pin.difference(humanoid().model, *rows) for rows in zip(log.q, expected.q, strict=True)])
     assert np.abs(gap).max() < q
     assert np.abs(log.v - expected.v).max() < v
+
+
+def table(folder: Path, kind: str) -> Path:
+    log = swaying()
+    assert log.wrenches is not None
+    found = columns()
+    for k, sensor in enumerate(FEET):
+        for part, name in enumerate(("force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z")):
+            found[f"{sensor.name}_{name}"] = log.wrenches[:, k, part]
+    file = folder / f"a.{kind}"
+    if kind == "csv":
+        return write_csv(file, found)
+    if kind == "npz":
+        np.savez(file, **found)
+    else:
+        pa, writer = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+        writer.write_table(pa.table(found), file)
+    return file

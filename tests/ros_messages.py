@@ -42,11 +42,15 @@ class Writer:
     def twist(self, topic: str, time: float, v: Rows, frame: str) -> Message:
         return self._message(topic, TWIST, time, frame, self._twist(v))
 
-    def imu(self, topic: str, time: float, quaternion: Rows, angular: Rows, frame: str) -> Message:
+    def imu(
+        self, topic: str, time: float, quaternion: Rows, angular: Rows, frame: str, known: float = 0.0
+    ) -> Message:
+        """`known` is the first number of the orientation's covariance, -1 for none."""
         make, none = self._make, np.zeros(9)
+        covariance = np.array([known, *none[1:]])
         turn = make("geometry_msgs/msg/Quaternion", *quaternion)
         speed, gravity = (make("geometry_msgs/msg/Vector3", *it) for it in (angular, (0.0, 0.0, 9.81)))
-        return self._message(topic, IMU, time, frame, turn, none, speed, none, gravity, none)
+        return self._message(topic, IMU, time, frame, turn, covariance, speed, none, gravity, none)
 
     def joints(self, log: cs.Log, names: tuple[str, ...], width: int) -> list[Message]:
         """`/joint_states` of the last `width` columns of each quantity."""

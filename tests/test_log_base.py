@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 import pytest
-from humanoid_logs import DT, FEET, POSE, assert_same_motion, columns, humanoid, swaying
+from humanoid_logs import DT, FEET, POSE, assert_same_motion, columns, humanoid, swaying, table
 from log_files import write_csv
 
 import contactsense as cs
@@ -33,24 +33,6 @@ def whole(encoding: str) -> list[Message]:
             for it, row in zip(FEET, wrenches, strict=True)
         ]
     return found
-
-
-def table(folder: Path, kind: str) -> Path:
-    log = swaying()
-    assert log.wrenches is not None
-    found = columns()
-    for k, sensor in enumerate(FEET):
-        for part, name in enumerate(("force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z")):
-            found[f"{sensor.name}_{name}"] = log.wrenches[:, k, part]
-    file = folder / f"a.{kind}"
-    if kind == "csv":
-        return write_csv(file, found)
-    if kind == "npz":
-        np.savez(file, **found)
-    else:
-        pa, writer = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
-        writer.write_table(pa.table(found), file)
-    return file
 
 
 FORMATS: dict[str, Callable[[Path], Path]] = {
@@ -102,8 +84,11 @@ def test_a_replay_says_what_the_live_loop_says_bit_for_bit(tmp_path: Path, name:
     assert contact.link == "utorso"
     assert 0.2 <= contact.start < 0.22
     assert 60.0 < contact.peak_force < 100.0
+    # What is written is a log itself.
     result.to_mcap(tmp_path / "out.mcap")
-    assert (tmp_path / "out.mcap").stat().st_size > 100_000
+    again = cs.read_log(tmp_path / "out.mcap", humanoid(), topics=["/joint_states", "/base"])
+    assert_same_motion(again, log)
+    np.testing.assert_array_equal(again.tau, log.tau)
 
 
 def test_without_a_twist_the_pose_is_differentiated(tmp_path: Path) -> None:
@@ -134,7 +119,16 @@ def test_a_twist_may_be_in_axes_of_the_base_or_the_world(tmp_path: Path, axes: s
     read = cs.read_log(bag(tmp_path, given), humanoid())
     assert_same_motion(read, log)
     assert read.reading is not None
-    assert f"linear in axes of the {axes} and angular in axes of the {axes}" in str(read.reading)
+    assert f"[m/s, rad/s], in axes of the {axes}" in str(read.reading)
+
+
+def test_axes_of_linear_and_angular_velocity_may_differ(tmp_path: Path) -> None:
+    found, log = columns(), swaying()
+    world = np.array([pin.Quaternion(q[3:7]).matrix() @ v[:3] for q, v in zip(log.q, log.v, strict=True)])
+    found |= {f"base_v{axis}": world[:, k] for k, axis in enumerate("xyz")}  # as MuJoCo's qvel
+    read = cs.read_log(write_csv(tmp_path / "a.csv", found), humanoid())
+    assert_same_motion(read, log)
+    assert "linear in axes of the world and angular in axes of the base" in str(read.reading)
 
 
 def test_a_twist_that_fits_in_no_axes_is_left_out(tmp_path: Path) -> None:
@@ -193,6 +187,11 @@ def test_an_imu_gives_rotation_and_says_what_is_missing(tmp_path: Path) -> None:
     expected_q[:, :3], expected_v[:, :3] = 0.0, 0.0
     assert_same_motion(read, cs.Log(log.time, expected_q, expected_v, log.tau))
     assert "position and linear velocity of the base are zero" in str(read.reading)
+    # One that does not know how it is turned says so.
+    rows = zip(log.time, log.q, log.v, strict=True)
+    given = [writer.imu("/imu/data", time, q[3:7], v[3:6], "imu_link", -1.0) for time, q, v in rows]
+    with pytest.raises(cs.InputError, match="nothing says where the base is"):
+        cs.read_log(bag(tmp_path, given), humanoid())
     # One that moves against the base does not say how the base is turned.
     rows = zip(log.time, log.q, log.v, strict=True)
     given = [writer.imu("/imu/data", time, q[3:7], v[3:6], "utorso") for time, q, v in rows]

@@ -215,6 +215,17 @@ def test_a_frame_that_the_robot_lacks_is_noted(tmp_path: Path) -> None:
         cs.read_log(write_mcap(tmp_path / "b.mcap", given), arm(), sensors=[RIGHT])
 
 
+def test_what_a_controller_estimates_is_no_sensor_by_itself(tmp_path: Path) -> None:
+    writer, log = Writer("cdr"), pushed()[:ROWS]
+    given = writer.joints(log, NAMES, 7)
+    given += [writer.wrench("/ext_wrench", log.time[row], READINGS[row, 0]) for row in range(ROWS)]
+    file = write_mcap(tmp_path / "a.mcap", given)
+    with pytest.raises(cs.InputError, match="no wrench is named as 'right_ft'"):
+        cs.read_log(file, arm(), sensors=[RIGHT])
+    log = cs.read_log(file, arm(), sensors={RIGHT: "/ext_wrench"})
+    np.testing.assert_array_equal(log.wrenches, READINGS[:, :1])
+
+
 def test_a_sensor_without_a_reading_is_an_error(tmp_path: Path) -> None:
     table = columns(sides=("left_ft",))
     table = {name: np.full(ROWS, np.nan) if "_ft_force" in name else rows for name, rows in table.items()}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
@@ -21,6 +21,7 @@ from ..offline import Replay, replay
 from ..robot import Robot
 from .exit_codes import DAMAGED, INTERRUPTED
 from .log_options import LogOptions, with_log_options
+from .sensor_options import ConventionOption, SensorOption, WantedOption, sensors_of
 
 # A robot that is touched for more of the time than this is rather one whose model is wrong.
 _OFTEN = 0.5
@@ -50,6 +51,12 @@ def command(
         float | None,
         typer.Option(help="Time constant in s of the bias that is learnt without contact (default: none)."),
     ] = None,
+    sensor: SensorOption = None,
+    sensor_convention: ConventionOption = "load",
+    wanted: WantedOption = None,
+    wrench_threshold: Annotated[
+        float, typer.Option(help="Wrench at a sensor that is a contact, in N and Nm.")
+    ] = 2.0,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for contacts.jsonl, Parquet tables and replay.mcap (one folder a log)."),
@@ -64,10 +71,21 @@ def command(
         require("log", "pyarrow", "rosbags", "mcap")
     loaded = options.load_robot()
     known = None if calibration is None else Calibration.load(calibration)
+    sensors = sensors_of(sensor, sensor_convention)
+    settings: dict[str, Any] = {
+        "sensors": list(sensors),
+        "wanted_contacts": wanted or [],
+        "wrench_threshold": wrench_threshold,
+        "observer_gain": gain,
+        "bias_time_constant": bias_time,
+        "calibration": known,
+    }
+    if threshold is not None:
+        settings["torque_threshold"] = threshold
     code = 0
     for path in logs:
-        log = options.load_log(path, loaded)
-        monitor = make_monitor(loaded, log, known, threshold, gain, bias_time)
+        log = options.load_log(path, loaded, sensors)
+        monitor = make_monitor(loaded, log, settings)
         with progress_bar(path.name, as_json) as show:
             result = replay(log, monitor, on_progress=show)
         print_contacts(path, result, as_json)
@@ -81,23 +99,11 @@ def command(
         raise typer.Exit(code)
 
 
-def make_monitor(
-    robot: Robot,
-    log: Log,
-    calibration: Calibration | None,
-    threshold: float | None,
-    gain: float,
-    bias_time: float | None,
-) -> ContactMonitor:
+def make_monitor(robot: Robot, log: Log, settings: Mapping[str, Any]) -> ContactMonitor:
     """A monitor for a log at the rate of its rows."""
     if len(log) < 2:
         raise InputError(f"log: has {len(log)} rows; at least 2 are wanted")
-    given: dict[str, Any] = {} if threshold is None else {"torque_threshold": threshold}
-    if bias_time is not None:
-        given["bias_time_constant"] = bias_time
-    return ContactMonitor(
-        robot, dt=float(np.median(np.diff(log.time))), observer_gain=gain, calibration=calibration, **given
-    )
+    return ContactMonitor(robot, dt=float(np.median(np.diff(log.time))), **settings)
 
 
 @contextmanager

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from .. import _core
 from ..errors import InputError
 from .components import Block, Kind, blocks, named_block, phrases
@@ -77,7 +79,7 @@ def _pose(recording: Recording, names: Sequence[Tokens], base: Sequence[str], mo
     if not best:
         turns = [block for block in blocks(recording.tables, ORIENTATION) if not _is_within(block, poses)]
         best = [block for block in turns if _beside(recording, block, ANGULAR) is not None]
-        best = [block for block in best if not _is_among(block.frame, moving)]
+        best = [it for it in best if not _is_among(it.frame, moving) and not _is_unknown(it)]
     own = [block for block in best if _is_among(child_frame(block), base)]
     named = [block for block in best if _BASE_WORDS & set(block.words)]
     best = best if len(best) < 2 else own or named or best
@@ -141,12 +143,15 @@ def _is_base(block: Block, names: Sequence[Tokens]) -> bool:
     )
 
 
+def _is_unknown(block: Block) -> bool:
+    """Whether an IMU says that it does not know how it is turned."""
+    told = block.table.columns.get("orientation_covariance[0]")
+    return told is not None and bool(np.all(told == -1.0))
+
+
 def child_frame(block: Block) -> str:
     """The frame whose pose it is."""
-    if block.kind is ORIENTATION:
-        return block.frame
-    frames = block.table.frames.get("child_frame_id", ())
-    return frames[0].strip("/") if len(frames) == 1 else ""
+    return block.frame if block.kind is ORIENTATION else block.frame_in("child_frame_id")
 
 
 def _is_among(frame: str, links: Sequence[str]) -> bool:

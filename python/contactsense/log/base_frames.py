@@ -35,6 +35,11 @@ def is_base(place: Rows) -> bool:
     return bool(np.abs(place - np.eye(4)).max() < _SAME)
 
 
+def base_link(robot: _core.Robot) -> str:
+    """The link whose pose a floating base has; empty if no link is there."""
+    return next((name for name, place in carried_links(robot).items() if is_base(place)), "")
+
+
 def told_axes(given: Rows, expected: Rows, quaternions: Rows) -> str:
     """Whether velocities are in the axes of the "world" or the "base", by differences of the pose.
 

@@ -10,16 +10,17 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..errors import InputError
-from .base_columns import ANGULAR, ORIENTATION, BaseColumns, base_columns, child_frame
-from .base_frames import carried_links, is_base, told_axes
+from .base_columns import ORIENTATION, base_columns, child_frame
+from .base_frames import carried_links, is_base
+from .base_twist import twist_of
 from .choice import Group
 from .components import Block
 from .formats.messages import BASE_KINDS
 from .held import Extra, Series, series_of
 from .quantities import CURRENT, EXTERNAL, TORQUE
-from .quaternions import continuous, inverse, of_matrix, product, rotated, rotation_vectors
+from .quaternions import continuous, inverse, of_matrix, product, rotated
 from .recording import Recording
-from .resample import QUATERNION, differences, neighbours
+from .resample import QUATERNION
 from .time_axis import TimeAxis
 
 Rows = NDArray[np.float64]
@@ -45,14 +46,18 @@ def base_rows(
     links = carried_links(robot)
     own = {name: is_base(place) for name, place in links.items()}
     found = base_columns(recording, robot, own, columns)
+    for block in (found.pose, found.twist):
+        if block is not None:
+            block.check_frames("columns")
     extra = Extra.none(axis)
     poses = _poses(series_of(recording, found.pose, time_column), found.pose, extra)
     place, note = _place(found.pose, links, robot)
-    twist = _twists(recording, found, poses, [name for name in own if own[name]], time_column, extra)
-    extra.chosen.insert(0, f"pose of the base from {found.pose.title}{note}")
+    extra.chosen.append(f"pose of the base from {found.pose.title}{note}")
     if found.pose.kind is ORIENTATION:
-        extra.chosen.insert(1, _REST)
+        extra.chosen.append(_REST)
         place[:3, 3] = 0.0
+    base = [name for name in own if own[name] and is_base(place)]
+    twist = twist_of(recording, found, poses, base, time_column, extra)
     pose_rows, present = poses.at(axis)
     twist_rows, moving = twist.at(axis)
     extra.known &= present & moving
@@ -116,71 +121,9 @@ def _place(block: Block, links: Mapping[str, Rows], robot: _core.Robot) -> tuple
     if known is not None:
         note = "" if is_base(links[known]) else f", which is that of '{known}', moved to the base"
         return links[known].copy(), note
-    if frame in robot.all_link_names:
+    if {frame, frame.rpartition("/")[2]} & set(robot.all_link_names):
         raise InputError(f"columns: {block.title} is the pose of '{frame}', which moves against the base")
     return np.eye(4), f"; the robot has no frame '{frame}', which is taken as the base" if frame else ""
-
-
-def _twists(
-    recording: Recording,
-    found: BaseColumns,
-    poses: Series,
-    base: Sequence[str],
-    time_column: str | None,
-    extra: Extra,
-) -> Series:
-    """Linear and angular velocity in the axes of the frame that is measured."""
-    own = replace(poses, values=_differences(poses))
-    block = found.twist
-    if block is None:
-        extra.chosen.append("velocity of the base: central differences of its pose")
-        return own
-    series = series_of(recording, block, time_column)
-    at_rest = np.zeros((len(series.values), 6 - series.values.shape[1]))
-    values = np.column_stack([at_rest, series.values])
-    pose_rows, known = poses.at(series)
-    expected, _ = own.at(series)
-    kept = known if np.any(known) else np.zeros(len(values), dtype=bool)
-    values, quaternions, expected = values[kept], pose_rows[kept, 3:], expected[kept]
-    axes = {}
-    for name, part in (("linear", slice(0, 3)), ("angular", slice(3, 6))):
-        told = _named_axes(block, found.pose, base) or told_axes(
-            values[:, part], expected[:, part], quaternions
-        )
-        if told == "world":
-            values[:, part] = rotated(inverse(quaternions), values[:, part])
-        axes[name] = told
-    if not all(axes.values()) or not len(values):
-        extra.chosen.append("velocity of the base: central differences of its pose")
-        extra.left_out.append(f"velocity {block.title}: fits the differences of the pose in no axes")
-        return own
-    where = " and ".join(f"{name} in axes of the {told}" for name, told in axes.items())
-    where = "" if block.kind is ANGULAR else f", {where}"
-    extra.chosen.append(f"velocity of the base from {block.title}{where} [m/s, rad/s]")
-    return replace(series, time=series.time[kept], values=values)
-
-
-def _named_axes(block: Block, pose: Block, base: Sequence[str]) -> str:
-    """The axes of a twist where its messages name them."""
-    if block.kind is ANGULAR and block.table is pose.table:
-        return "base"
-    if block.table.kind == "nav_msgs/msg/Odometry":
-        return "base"
-    frame = block.frame
-    if not frame:
-        return ""
-    if frame in base or frame == child_frame(pose):
-        return "base"
-    return "world" if frame == pose.frame and pose.table.kind else ""
-
-
-def _differences(poses: Series) -> Rows:
-    """Twist in axes of the moving frame, by central differences of its pose."""
-    quaternions = poses.values[:, 3:]
-    before, after = neighbours(poses.time)
-    turn = rotation_vectors(product(inverse(quaternions[before]), quaternions[after]))
-    linear = rotated(inverse(quaternions), differences(poses.time, poses.values[:, :3]))
-    return np.column_stack([linear, turn / (poses.time[after] - poses.time[before])[:, None]])
 
 
 def _of_base(poses: Rows, twists: Rows, place: Rows) -> dict[str, Rows]:

@@ -102,8 +102,23 @@ class Block:
     @property
     def frame(self) -> str:
         """The frame of its messages; empty where it is not known."""
-        frames = self.table.frames.get("header.frame_id", ())
+        return self.frame_in("header.frame_id")
+
+    def frame_in(self, field: str) -> str:
+        """The frame that a field names; empty where none is known."""
+        frames = self.table.frames.get(field, ())
         return frames[0].strip("/") if len(frames) == 1 else ""
+
+    def check_frames(self, argument: str) -> None:
+        """Refuses messages of which some are in another frame.
+
+        Raises:
+            InputError: lists the frames.
+        """
+        for frames in self.table.frames.values():
+            if len(frames) > 1:
+                names = ", ".join(f"'{frame}'" for frame in frames)
+                raise InputError(f"{argument}: messages of {self.table.name} are of several frames: {names}")
 
     @property
     def title(self) -> str:

@@ -16,6 +16,8 @@ from .sensors import WantedSensor
 from .time_axis import TimeAxis
 
 WRENCHES = "wrenches"
+# What a controller works out is no reading of a sensor, unless its name says so.
+_ESTIMATED = frozenset({"ext", "external", "estimate", "estimated", "hat"})
 # Words that names of sensors and topics have or lack at will.
 _FILLERS = frozenset({"ft", "fts", "sensor", "force", "torque", "wrench", "link", "frame", "joint", "data"})
 
@@ -37,10 +39,8 @@ def wrench_rows(
     extra = Extra.none(axis)
     columns = []
     for sensor, block in zip(wanted, chosen, strict=True):
+        block.check_frames("sensors")
         note = sensor.frame_note(block.frame, robot)
-        if len(block.table.frames.get("header.frame_id", ())) > 1:
-            frames = ", ".join(f"'{frame}'" for frame in block.table.frames["header.frame_id"])
-            raise InputError(f"sensors: messages of {block.table.name} are of several frames: {frames}")
         series = series_of(recording, block, time_column)
         values, present = series.at(axis)
         if not np.any(present):
@@ -90,7 +90,7 @@ def _found(sensor: WantedSensor, there: Sequence[Block], is_alone: bool) -> Bloc
         some = [block for block in fitting if fits(block)]
         if some:
             fitting, told = some, True
-    if len(fitting) == 1 and (told or is_alone):
+    if len(fitting) == 1 and (told or (is_alone and not _ESTIMATED & set(fitting[0].words))):
         return fitting[0]
     at = f" at '{sensor.link}'" if sensor.link else ""
     if told:
