@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from humanoid_logs import POSE, TWIST, assert_same_motion, columns, humanoid, swaying
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from log_files import arm, pushed, write_csv
 
 import contactsense as cs
@@ -68,6 +70,20 @@ def test_what_fits_twice_or_not_at_all_is_named(tmp_path: Path) -> None:
         cs.read_log(bag(tmp_path, given), humanoid(), columns={"base_pose": "/nosuch"})
 
 
+def test_a_component_that_is_there_twice_is_named(tmp_path: Path) -> None:
+    found = columns()
+    found["base_px"], found["base_vel_x"] = found["base_x"] + 1.0, found["base_vx"] + 1.0
+    file = write_csv(tmp_path / "a.csv", found)
+    with pytest.raises(cs.InputError, match=r"several fit as the pose of the base: 'base_x'.*'base_px'"):
+        cs.read_log(file, humanoid())
+    with pytest.raises(
+        cs.InputError, match=r"several fit as the velocity of the base: 'base_vx'.*'base_vel_x'"
+    ):
+        cs.read_log(file, humanoid(), columns={"base_pose": list(POSE)})
+    read = cs.read_log(file, humanoid(), columns={"base_pose": list(POSE), "base_twist": list(TWIST)})
+    assert_same_motion(read, swaying())
+
+
 def test_an_external_torque_says_nothing_of_the_base(tmp_path: Path) -> None:
     found = {name.replace("effort", "tau_ext"): rows for name, rows in columns().items()}
     with pytest.raises(
@@ -87,3 +103,23 @@ def test_a_fixed_base_lists_odometry_as_left_out(tmp_path: Path) -> None:
     read = cs.read_log(write_mcap(tmp_path / "a.mcap", given), arm())
     assert read.reading is not None
     assert read.reading.left_out == ("/odom (nav_msgs/msg/Odometry): no measurements of joints or forces",)
+
+
+WORD = st.sampled_from(
+    ["base", "x", "y", "z", "w", "q", "qx", "vx", "pose", "position", "rot", "hand", "cmd", "0"]
+)
+
+
+@settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(extra=st.lists(st.lists(WORD, min_size=1, max_size=4).map("_".join), max_size=14))
+def test_columns_beside_those_of_the_base_are_left_alone(tmp_path: Path, extra: list[str]) -> None:
+    own = {name: rows[:12] for name, rows in columns().items()}
+    others = {name: -1.0 - np.arange(12.0) for name in extra if name not in own}
+    file = write_csv(tmp_path / "a.csv", {**others, **own})
+    try:
+        log = cs.read_log(file, humanoid())
+    except cs.InputError:
+        if extra:
+            return
+        raise
+    assert_same_motion(log, swaying()[:12])

@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import InputError
-from .components import Block, Kind, blocks, named_block, phrases
+from .components import Block, Kind, blocks, named_block, phrases, titles
 from .joint_names import Tokens, words
 from .recording import Recording, listing
 
@@ -78,7 +78,7 @@ def _pose(recording: Recording, names: Sequence[Tokens], base: Sequence[str], mo
     best = [block for block in poses if _is_base(block, names)]
     if not best:
         turns = [block for block in blocks(recording.tables, ORIENTATION) if not _is_within(block, poses)]
-        best = [block for block in turns if _beside(recording, block, ANGULAR) is not None]
+        best = [block for block in turns if _beside(block, ANGULAR)]
         best = [it for it in best if not _is_among(it.frame, moving) and not _is_unknown(it)]
     own = [block for block in best if _is_among(child_frame(block), base)]
     named = [block for block in best if _BASE_WORDS & set(block.words)]
@@ -90,37 +90,36 @@ def _pose(recording: Recording, names: Sequence[Tokens], base: Sequence[str], mo
         "x y z w"
     )
     if best:
-        titles = "; ".join(block.title for block in best)
-        raise InputError(f"columns: several fit as the pose of the base: {titles}; {how}")
-    others = "; ".join(block.title for block in poses)
+        raise InputError(f"columns: several fit as the pose of the base: {titles(best)}; {how}")
     raise InputError(
         "columns: nothing says where the base is: nav_msgs/Odometry, geometry_msgs/PoseStamped, "
         "sensor_msgs/Imu, or columns such as base_x and base_qw; "
-        + (f"there are other poses: {others}; {how}" if poses else f"{how}; there are {listing(recording)}")
+        + (
+            f"there are other poses: {titles(poses)}; {how}"
+            if poses
+            else f"{how}; there are {listing(recording)}"
+        )
     )
 
 
 def _twist(recording: Recording, pose: Block, names: Sequence[Tokens]) -> Block | None:
     kind = ANGULAR if pose.kind is ORIENTATION else TWIST
-    beside = _beside(recording, pose, kind)
-    if beside is not None or kind is ANGULAR:
-        return beside
-    best = [block for block in blocks(recording.tables, kind) if _is_base(block, names)]
+    best = _beside(pose, kind)
+    if not best and kind is TWIST:
+        best = [block for block in blocks(recording.tables, kind) if _is_base(block, names)]
     if len(best) > 1:
-        titles = "; ".join(block.title for block in best)
         raise InputError(
-            f"columns: several fit as the velocity of the base: {titles}; name one with "
+            f"columns: several fit as the velocity of the base: {titles(best)}; name one with "
             f"columns={{'{BASE_TWIST}': ...}}"
         )
     return best[0] if best else None
 
 
-def _beside(recording: Recording, block: Block, kind: Kind) -> Block | None:
-    """That of the same table with the same words, or the only one there."""
+def _beside(block: Block, kind: Kind) -> list[Block]:
+    """Those of the same table with the same words, or the only one there."""
     there = blocks([block.table], kind)
     same = [other for other in there if _telling(other.stem) == _telling(block.stem)]
-    best = same or there
-    return best[0] if len(best) == 1 else None
+    return same or (there if len(there) == 1 else [])
 
 
 def _telling(stem: Tokens) -> Tokens:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import fnmatch
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from ..errors import InputError
 from .joint_names import Tokens, words
@@ -34,22 +35,29 @@ class Kind:
     phrases: Mapping[Tokens, str]
     numbered: frozenset[str] = frozenset()
 
-    def component(self, name: Tokens) -> tuple[str, Tokens] | None:
-        """The component that a name tells, and the words of the name that are left."""
+    @cached_property
+    def _telling(self) -> frozenset[str]:
+        """The first words of all phrases, of which a name has one: most columns of a log have none."""
+        return self.numbered | {phrase[0] for phrase in self.phrases}
+
+    def component(self, name: Tokens) -> tuple[str, Tokens, Tokens] | None:
+        """The component that a name tells, and the words of the name before and after."""
+        if self._telling.isdisjoint(name):
+            return None
         if len(name) > 1 and name[-1].isdecimal():
             number = int(name[-1][:_DIGITS])
             if name[-2] in self.numbered and number < len(self.order):
-                return self.order[number], name[:-1]
+                return self.order[number], name[:-1], ()
             if number < len(_AXES):  # of an array of a vector
                 axis = (*name[:-1], _AXES[number])
                 for first in range(len(name) - 1):
                     if axis[first:] in self.phrases:
-                        return self.phrases[axis[first:]], name[:first]
+                        return self.phrases[axis[first:]], name[:first], ()
         for length in range(max(map(len, self.phrases)), 0, -1):
             for first in range(len(name) - length, -1, -1):
                 found = self.phrases.get(name[first : first + length])
                 if found is not None:
-                    return found, name[:first] + name[first + length :]
+                    return found, name[:first], name[first + length :]
         return None
 
 
@@ -127,6 +135,14 @@ class Block:
         return f"'{self.columns[0]}' to '{self.columns[-1]}' of {self.table.name}{frame}"
 
 
+def titles(several: Sequence[Block]) -> str:
+    """Of blocks to choose from, for messages; with all columns where first and last do not tell them apart."""
+    short = [block.title for block in several]
+    if len(set(short)) < len(short):
+        short = [f"{', '.join(block.columns)} of {block.table.name}" for block in several]
+    return "; ".join(short)
+
+
 def blocks(tables: Sequence[Table], kind: Kind) -> list[Block]:
     """All complete ones; what was asked for, and not measured, is none."""
     measured = [table for table in tables if not (table.kind and NOT_MEASURED & set(words(table.name)))]
@@ -146,8 +162,9 @@ def named_block(recording: Recording, kinds: Sequence[Kind], given: str | Sequen
         if len(found) == 1:
             return found[0]
         if found:
-            titles = "; ".join(block.title for block in found)
-            raise InputError(f"{what}: several fit {given!r}: {titles}; name the columns of one of them")
+            raise InputError(
+                f"{what}: several fit {given!r}: {titles(found)}; name the columns of one of them"
+            )
     raise InputError(
         f"{what}: nothing that {given!r} names has the {len(kinds[0].order)} components of a "
         f"{kinds[0].name}, {', '.join(kinds[0].order)}; there are {listing(recording)}"
@@ -175,18 +192,18 @@ def _measured(columns: Iterable[str]) -> list[str]:
 
 
 def _of_columns(table: Table, kind: Kind, columns: Sequence[str]) -> list[Block]:
-    found: dict[Tokens, dict[str, str]] = {}
-    twice: set[Tokens] = set()
+    found: dict[tuple[Tokens, Tokens], dict[str, list[str]]] = {}
     for column in columns:
-        name = words(column)
-        told = kind.component(name)
+        told = kind.component(words(column))
         if told is not None:
-            part, stem = told
-            stem = stem[:-1] if name[-1] in _UNITS else stem
-            twice |= {stem} if part in found.get(stem, {}) else set()
-            found.setdefault(stem, {})[part] = column
+            part, before, after = told
+            while after and after[-1] in _UNITS:
+                after = after[:-1]
+            found.setdefault((before, after), {}).setdefault(part, []).append(column)
+    whole = {stem: parts for stem, parts in found.items() if len(parts) == len(kind.order)}
     return [
-        Block(kind, table, tuple(parts[part] for part in kind.order), stem)
-        for stem, parts in found.items()
-        if len(parts) == len(kind.order) and stem not in twice
+        Block(kind, table, chosen, (*before, *after))
+        for (before, after), parts in whole.items()
+        # Where a component is there twice, both are found, so that none is taken without a word.
+        for chosen in dict.fromkeys(tuple(parts[part][end] for part in kind.order) for end in (0, -1))
     ]

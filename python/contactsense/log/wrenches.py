@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import InputError
-from .components import WRENCH, Block, blocks, named_block
+from .components import WRENCH, Block, blocks, named_block, titles
 from .held import Extra, series_of
 from .joint_names import Tokens, words
 from .recording import Recording
@@ -124,4 +124,4 @@ def _has(words_of_block: Tokens, some: Tokens) -> bool:
 
 
 def _listing(there: Sequence[Block]) -> str:
-    return "; ".join(block.title for block in there) or "no columns of six components"
+    return titles(there) or "no columns of six components"
