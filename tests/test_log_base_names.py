@@ -81,6 +81,9 @@ def test_a_component_that_is_there_twice_is_named(tmp_path: Path) -> None:
     ):
         cs.read_log(file, humanoid(), columns={"base_pose": list(POSE)})
     read = cs.read_log(file, humanoid(), columns={"base_pose": list(POSE), "base_twist": list(TWIST)})
+    file = write_csv(tmp_path / "b.csv", {**columns(), "base_py": found["base_y"]})
+    with pytest.raises(cs.InputError, match=r"base_x, base_y, base_z.*; base_x, base_py, base_z"):
+        cs.read_log(file, humanoid())
     assert_same_motion(read, swaying())
 
 

@@ -136,7 +136,7 @@ class Block:
 
 
 def titles(several: Sequence[Block]) -> str:
-    """Of blocks to choose from, for messages; with all columns where first and last do not tell them apart."""
+    """Of blocks to choose from, for messages; with all columns where the first and last are the same."""
     short = [block.title for block in several]
     if len(set(short)) < len(short):
         short = [f"{', '.join(block.columns)} of {block.table.name}" for block in several]
