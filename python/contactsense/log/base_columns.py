@@ -94,11 +94,7 @@ def _pose(recording: Recording, names: Sequence[Tokens], base: Sequence[str], mo
     raise InputError(
         "columns: nothing says where the base is: nav_msgs/Odometry, geometry_msgs/PoseStamped, "
         "sensor_msgs/Imu, or columns such as base_x and base_qw; "
-        + (
-            f"there are other poses: {titles(poses)}; {how}"
-            if poses
-            else f"{how}; there are {listing(recording)}"
-        )
+        f"{how}; there are {f'other poses: {titles(poses)}' if poses else listing(recording)}"
     )
 
 
