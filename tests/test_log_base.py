@@ -236,7 +236,7 @@ def test_quaternions_of_length_zero_and_missing_values_are_counted(tmp_path: Pat
     assert read.reading is not None
     assert read.reading.mended == (
         "3 quaternions of the base of length zero left out",
-        "2 poses of the base are missing; the last one before each is kept",
+        "2 rows without pose of the base; the last one before is kept",
     )
     assert len(read) == len(swaying())
     np.testing.assert_allclose(read.q[[30, 31, 50, 70]][:, 3:7], swaying().q[[29, 29, 49, 69]][:, 3:7])

@@ -104,10 +104,10 @@ def test_every_format_has_the_readings_in_the_order_of_the_sensors(
     assert log.reading is not None
     assert sum("wrench of" in line for line in log.reading.chosen) == 2
     assert log.reading.left_out == ()
-    missing = [line for line in log.reading.mended if "readings of" in line]
+    missing = [line for line in log.reading.mended if "reading of" in line]
     bags = name.startswith(("mcap", "rosbag"))
     assert missing == ([] if bags else [
-        f"{ROWS - len(STAMPED)} readings of '{it.name}' are missing; the last one before each is kept"
+        f"{ROWS - len(STAMPED)} rows without reading of '{it.name}'; the last one before is kept"
         for it in sensors
     ])  # fmt: skip
 
@@ -226,10 +226,30 @@ def test_what_a_controller_estimates_is_no_sensor_by_itself(tmp_path: Path) -> N
     np.testing.assert_array_equal(log.wrenches, READINGS[:, :1])
 
 
+def test_gaps_and_other_clocks_are_noticed(tmp_path: Path) -> None:
+    writer, log = Writer("cdr"), pushed()[:ROWS]
+    joints = writer.joints(log, NAMES, 7)
+    rows = [*range(50), *range(90, 150)]
+    given = joints + [writer.wrench("/ft", log.time[row], READINGS[row, 0]) for row in rows]
+    read = cs.read_log(write_mcap(tmp_path / "a.mcap", given), arm(), sensors=[RIGHT])
+    assert read.reading is not None
+    assert read.reading.mended == (
+        "1 gaps in reading of 'right_ft', the longest 0.041 s; the last one before is kept",
+        "reading of 'right_ft' ends 0.050 s before the joints; the last one is kept",
+    )
+    held = [*range(50), *[49] * 40, *range(90, 150), *[149] * 50]
+    np.testing.assert_array_equal(read.wrenches, READINGS[held][:, :1])
+    given = joints + [writer.wrench("/ft", log.time[row] - 900.0, READINGS[row, 0]) for row in rows]
+    with pytest.raises(
+        cs.InputError, match=r"ends 899\.851 s before the joints begin; are their clocks the same"
+    ):
+        cs.read_log(write_mcap(tmp_path / "b.mcap", given), arm(), sensors=[RIGHT])
+
+
 def test_a_sensor_without_a_reading_is_an_error(tmp_path: Path) -> None:
     table = columns(sides=("left_ft",))
     table = {name: np.full(ROWS, np.nan) if "_ft_force" in name else rows for name, rows in table.items()}
-    with pytest.raises(cs.InputError, match="'left_ft' has no reading"):
+    with pytest.raises(cs.InputError, match="the log has no reading of 'left_ft'"):
         cs.read_log(write_csv(tmp_path / "a.csv", table), arm(), sensors=[LEFT])
 
 

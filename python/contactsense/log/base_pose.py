@@ -58,11 +58,11 @@ def base_rows(
         place[:3, 3] = 0.0
     base = [name for name in own if own[name] and is_base(place)]
     twist = twist_of(recording, found, poses, base, time_column, extra)
-    pose_rows, present = poses.at(axis)
+    pose_rows = extra.hold(poses, axis, "pose of the base", "columns")
     twist_rows, moving = twist.at(axis)
-    extra.known &= present & moving
-    if not np.any(extra.known):
-        raise InputError(f"columns: no pose of the base by the last row ({found.pose.title})")
+    if found.twist is not None and twist.time is not poses.time:
+        twist_rows = extra.hold(twist, axis, "velocity of the base", "columns")
+    extra.known &= moving
     extra.values |= _of_base(pose_rows, twist_rows, place)
     used = [found.pose.table, found.pose.table if found.twist is None else found.twist.table]
     others = [it for it in recording.tables if it.kind in BASE_KINDS and not any(it is one for one in used)]
@@ -101,10 +101,6 @@ def _poses(series: Series, block: Block, extra: Extra) -> Series:
     empty = int(np.count_nonzero(~whole))
     if empty:
         extra.mended.append(f"{empty} quaternions of the base of length zero left out")
-    if series.missing:
-        extra.mended.append(
-            f"{series.missing} poses of the base are missing; the last one before each is kept"
-        )
     values = series.values[whole]
     if len(values) < 2:
         raise InputError(f"columns: {len(values)} poses of the base are complete ({block.title})")

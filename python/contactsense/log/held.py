@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import InputError
 from .components import Block
 from .recording import Recording
-from .time_axis import TimeAxis, held, time_of
+from .time_axis import GAP, TimeAxis, held, time_of
 
 Rows = NDArray[np.float64]
 
@@ -71,6 +72,35 @@ class Extra:
     def none(cls, axis: TimeAxis) -> Extra:
         """Nothing yet."""
         return cls({}, np.ones(len(axis.time), dtype=bool), [], [], [])
+
+    def hold(self, series: Series, axis: TimeAxis, what: str, argument: str) -> Rows:
+        """The last values by each row of the joints; notes what is missing.
+
+        Raises:
+            InputError: there are none at the time of the joints.
+        """
+        values, present = series.at(axis)
+        if not np.any(present):
+            raise InputError(f"{argument}: the log has no {what} by the last row of the joints")
+        end = series.start + series.time[-1]
+        if end < axis.start:
+            raise InputError(
+                f"{argument}: {what} ends {axis.start - end:.3f} s before the joints begin; are their clocks "
+                "the same?"
+            )
+        self.known &= present
+        if series.missing:
+            self.mended.append(f"{series.missing} rows without {what}; the last one before is kept")
+        gaps = np.diff(series.time)
+        gaps = gaps[gaps > GAP * np.median(gaps)] if len(gaps) else gaps
+        if len(gaps):
+            self.mended.append(
+                f"{len(gaps)} gaps in {what}, the longest {gaps.max():.3f} s; the last one before is kept"
+            )
+        late = float(axis.start + axis.time[-1] - end)
+        if len(series.time) > 1 and late > GAP * np.median(np.diff(series.time)):
+            self.mended.append(f"{what} ends {late:.3f} s before the joints; the last one is kept")
+        return values
 
     def add(self, other: Extra) -> None:
         """Takes in another."""

@@ -42,16 +42,8 @@ def wrench_rows(
         block.check_frames("sensors")
         note = sensor.frame_note(block.frame, robot)
         series = series_of(recording, block, time_column)
-        values, present = series.at(axis)
-        if not np.any(present):
-            raise InputError(f"sensors: '{sensor.name}' has no reading by the last row ({block.title})")
-        columns.append(values)
-        extra.known &= present
+        columns.append(extra.hold(series, axis, f"reading of '{sensor.name}'", "sensors"))
         extra.chosen.append(f"wrench of '{sensor.name}' from {block.title} [N, Nm]{note}")
-        if series.missing:
-            extra.mended.append(
-                f"{series.missing} readings of '{sensor.name}' are missing; the last one before each is kept"
-            )
     if columns:
         extra.values[WRENCHES] = np.column_stack(columns)
     taken = {(id(block.table), block.columns) for block in chosen}
