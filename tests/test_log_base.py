@@ -187,6 +187,12 @@ def test_an_imu_gives_rotation_and_says_what_is_missing(tmp_path: Path) -> None:
     expected_q[:, :3], expected_v[:, :3] = 0.0, 0.0
     assert_same_motion(read, cs.Log(log.time, expected_q, expected_v, log.tau))
     assert "position and linear velocity of the base are zero" in str(read.reading)
+    given += [writer.pose("/mocap/7", time, q) for time, q in zip(log.time, log.q, strict=True)]
+    read = cs.read_log(bag(tmp_path, given), humanoid())
+    assert read.reading is not None
+    assert read.reading.left_out == (
+        "/mocap/7 (geometry_msgs/msg/PoseStamped): not named as that of the base (base_pose, base_twist)",
+    )
     # One that does not know how it is turned says so.
     rows = zip(log.time, log.q, log.v, strict=True)
     given = [writer.imu("/imu/data", time, q[3:7], v[3:6], "imu_link", -1.0) for time, q, v in rows]

@@ -180,6 +180,7 @@ def test_names_of_components(tmp_path: Path, names: tuple[str, ...], source: obj
         ("left_ft", "must be a sequence or a mapping"),
         (LEFT, "must be a sequence or a mapping"),
         (3, "must be a sequence or a mapping"),
+        ({"a": 3}, "named by a topic, a pattern or six columns"),
         ([3], "must be of contactsense.ForceTorqueSensor or names, not int"),
         ([cs.ForceTorqueSensor("a", "nosuch")], "'a' is at 'nosuch', which the robot does not have"),
         ({cs.ForceTorqueSensor("a", "iiwa_link_4"): "/left_ft/wrench"}, "'iiwa_link_5', which moves against"),

@@ -66,7 +66,10 @@ def base_rows(
     extra.values |= _of_base(pose_rows, twist_rows, place)
     used = [found.pose.table, found.pose.table if found.twist is None else found.twist.table]
     others = [it for it in recording.tables if it.kind in BASE_KINDS and not any(it is one for one in used)]
-    extra.left_out += [f"{table.name} ({table.kind}): the base is known without it" for table in others]
+    why = "the base is known without it"
+    if found.pose.kind is ORIENTATION:
+        why = "not named as that of the base (base_pose, base_twist)"
+    extra.left_out += [f"{table.name} ({table.kind}): {why}" for table in others]
     return extra
 
 

@@ -91,14 +91,14 @@ class Extra:
         self.known &= present
         if series.missing:
             self.mended.append(f"{series.missing} rows without {what}; the last one before is kept")
-        gaps = np.diff(series.time)
-        gaps = gaps[gaps > GAP * np.median(gaps)] if len(gaps) else gaps
+        steps = np.diff(series.time)
+        most = GAP * float(np.median(steps)) if len(steps) else np.inf
+        gaps = steps[steps > most]
         if len(gaps):
-            self.mended.append(
-                f"{len(gaps)} gaps in {what}, the longest {gaps.max():.3f} s; the last one before is kept"
-            )
+            longest = f"the longest {gaps.max():.3f} s"
+            self.mended.append(f"{len(gaps)} gaps in {what}, {longest}; the last one before is kept")
         late = float(axis.start + axis.time[-1] - end)
-        if len(series.time) > 1 and late > GAP * np.median(np.diff(series.time)):
+        if late > most:
             self.mended.append(f"{what} ends {late:.3f} s before the joints; the last one is kept")
         return values
 

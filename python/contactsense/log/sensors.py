@@ -34,22 +34,24 @@ class WantedSensor:
         Raises:
             InputError: the robot has this frame, and it is not the sensor's.
         """
-        if not frame or frame == self.name or self.sensor is None:
+        if not frame or self.sensor is None:
             return ""
         links = robot.all_link_names
         known = next((it for it in (frame, frame.rpartition("/")[2]) if it in links), None)
+        if known is None and frame == self.name:
+            return ""
         if known is None:
             return f"; the robot has no frame '{frame}', which is taken as the sensor's"
-        placements = [
+        place, elsewhere = (
             np.linalg.solve(robot.link_pose(q, self.link), robot.link_pose(q, known))
             for q in (robot.neutral(), robot.random_configuration(0))
-        ]
-        if np.abs(placements[0] - self.sensor.pose).max() < _SAME > np.abs(np.diff(placements, axis=0)).max():
-            return ""
-        if np.abs(np.diff(placements, axis=0)).max() > _SAME:
+        )
+        if np.abs(place - elsewhere).max() > _SAME:
             where = f"which moves against its link '{self.link}'"
+        elif np.abs(place - self.sensor.pose).max() > _SAME:
+            where = f"which is not its frame: give the sensor pose={place.round(9).tolist()}"
         else:
-            where = f"which is not its frame: give the sensor pose={placements[0].round(9).tolist()}"
+            return ""
         raise InputError(
             f"sensors: readings of '{self.name}' are in the frame '{known}', {where}; "
             "where the messages name a wrong frame, give its name in place of the sensor"
@@ -76,6 +78,9 @@ def wanted_sensors(given: Sensors, robot: _core.Robot) -> tuple[WantedSensor, ..
 def _wanted(
     sensor: _core.ForceTorqueSensor | str, source: str | Sequence[str] | None, robot: _core.Robot
 ) -> WantedSensor:
+    is_list = isinstance(source, Sequence) and all(isinstance(name, str) for name in source)
+    if source is not None and not is_list:
+        raise InputError("sensors: readings are named by a topic, a pattern or six columns")
     if isinstance(sensor, str):
         return WantedSensor(sensor, None, source)
     if not isinstance(sensor, _core.ForceTorqueSensor):

@@ -48,7 +48,7 @@ def wrench_rows(
         extra.values[WRENCHES] = np.column_stack(columns)
     taken = {(id(block.table), block.columns) for block in chosen}
     extra.left_out += [
-        f"wrench {block.title}: no sensor was asked for (sensors)"
+        f"wrench {block.title}: no sensor was given for it"
         for block in there
         if (id(block.table), block.columns) not in taken
     ]
