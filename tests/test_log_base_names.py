@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from humanoid_logs import POSE, TWIST, assert_same_motion, columns, humanoid, swaying
 from hypothesis import HealthCheck, given, settings
@@ -126,3 +127,27 @@ def test_columns_beside_those_of_the_base_are_left_alone(tmp_path: Path, extra: 
             return
         raise
     assert_same_motion(log, swaying()[:12])
+
+
+def test_the_joint_of_the_base_may_be_anywhere(tmp_path: Path) -> None:
+    body = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    (tmp_path / "a.urdf").write_text(
+        f"""<robot name="r"><link name="world"/><link name="hull">{body}</link><link name="arm">{body}</link>
+        <joint name="f" type="floating"><parent link="world"/><child link="hull"/>
+          <origin xyz="0.1 0.2 1.0" rpy="0.3 -0.2 0.5"/></joint>
+        <joint name="j" type="continuous"><parent link="hull"/><child link="arm"/><axis xyz="0 0 1"/></joint>
+        </robot>"""
+    )
+    robot = cs.Robot.from_urdf(tmp_path / "a.urdf")
+    log = swaying()
+    found = {"time": log.time, **{f"{name}_j": 0.1 * log.time for name in ("pos", "vel", "effort")}}
+    found |= {name.replace("base", "hull"): log.q[:, k] for k, name in enumerate(POSE)}
+    read = cs.read_log(write_csv(tmp_path / "a.csv", found), robot)
+    for row in (0, 100, 249):
+        pose = pin.SE3(robot.link_pose(read.q[row], "hull"))
+        gap = pin.log(pose.inverse() * pin.XYZQUATToSE3(log.q[row, :7])).vector
+        np.testing.assert_allclose(gap, 0.0, atol=1e-12)
+    np.testing.assert_allclose(read.q[:, 7:], np.column_stack([f(0.1 * log.time) for f in (np.cos, np.sin)]))
+    cs.replay(read, cs.ContactMonitor(robot, dt=0.002)).to_mcap(tmp_path / "a.mcap")
+    again = cs.read_log(tmp_path / "a.mcap", robot, topics=["/joint_states", "/base"])
+    np.testing.assert_allclose(again.q, read.q, atol=1e-12)

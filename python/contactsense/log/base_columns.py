@@ -9,7 +9,9 @@ import numpy as np
 
 from .. import _core
 from ..errors import InputError
-from .components import Block, Kind, blocks, named_block, phrases, titles
+from .base_frames import BaseFrames
+from .blocks import Block, blocks, named_block, titles
+from .components import Kind, phrases
 from .joint_names import Tokens, words
 from .recording import Recording, listing
 
@@ -51,21 +53,20 @@ class BaseColumns:
 def base_columns(
     recording: Recording,
     robot: _core.Robot,
-    links: Mapping[str, bool],
+    frames: BaseFrames,
     columns: Mapping[str, str | Sequence[str]],
 ) -> BaseColumns:
-    """What the log has of the base; `links` are those that it carries along, and whether each is the base.
+    """What the log has of the base.
 
     Raises:
         InputError: nothing, or several that fit as well.
     """
-    base = [name for name, is_base in links.items() if is_base]
-    names = [words(name) for name in (*base, robot.name)]
+    names = [words(name) for name in (*frames.own, robot.name)]
     if BASE_POSE in columns:
         pose = named_block(recording, [POSE, ORIENTATION], columns[BASE_POSE], f"columns: {BASE_POSE}")
     else:
-        moving = [name for name in robot.all_link_names if name not in links]
-        pose = _pose(recording, names, base, moving)
+        moving = [name for name in robot.all_link_names if name not in frames.links]
+        pose = _pose(recording, names, frames.own, moving)
     if BASE_TWIST in columns:
         kind = ANGULAR if pose.kind is ORIENTATION else TWIST
         twist = named_block(recording, [kind], columns[BASE_TWIST], f"columns: {BASE_TWIST}")

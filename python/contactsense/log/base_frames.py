@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from .quaternions import inverse, rotated
+from .quaternions import inverse, of_matrix, product, rotated
 
 Rows = NDArray[np.float64]
 
@@ -19,25 +22,51 @@ _TELLING = 0.1
 _FITTING = 0.25
 
 
-def carried_links(robot: _core.Robot) -> dict[str, Rows]:
-    """The pose of each link that does not move against the base, in its frame."""
+@dataclass(frozen=True)
+class BaseFrames:
+    """The frames of a floating base.
+
+    Args:
+        origin: `(4, 4)`, where the base is at the configuration zero: the place of its joint in the world.
+        links: the pose of each link that does not move against the base, in its frame.
+    """
+
+    origin: Rows
+    links: Mapping[str, Rows]
+
+    @property
+    def own(self) -> list[str]:
+        """The links whose frame is the base's."""
+        return [name for name, place in self.links.items() if is_same(place)]
+
+
+def base_frames(robot: _core.Robot) -> BaseFrames:
+    """Of a robot with a floating base."""
+    neutral, turned = robot.neutral(), robot.random_configuration(0)
+    move = _matrix(turned)
+    names = robot.all_link_names
+    poses = {name: (robot.link_pose(neutral, name), robot.link_pose(turned, name)) for name in names}
+    # The base's frame moves from where it is by the base's own pose; others only by chance.
+    origin = next((first for first, second in poses.values() if is_same(second, first @ move)), np.eye(4))
     places: dict[str, Rows] = {}
-    samples = [robot.neutral(), robot.random_configuration(0)]
-    for name in robot.all_link_names:
-        first, second = (_inverse_pose(q) @ robot.link_pose(q, name) for q in samples)
-        if np.abs(first - second).max() < _SAME:
-            places[name] = first
-    return places
+    for name, (first, second) in poses.items():
+        place = np.asarray(np.linalg.solve(origin, first), np.float64)
+        if is_same(second, origin @ move @ place):
+            places[name] = place
+    return BaseFrames(origin, places)
 
 
-def is_base(place: Rows) -> bool:
-    """Whether a frame at that pose is the base's."""
-    return bool(np.abs(place - np.eye(4)).max() < _SAME)
+def is_same(pose: Rows, other: Rows | None = None) -> bool:
+    """Whether two poses are one; the other is that of a frame in itself by default."""
+    return bool(np.abs(pose - (np.eye(4) if other is None else other)).max() < _SAME)
 
 
-def base_link(robot: _core.Robot) -> str:
-    """The link whose pose a floating base has; empty if no link is there."""
-    return next((name for name, place in carried_links(robot).items() if is_base(place)), "")
+def placed(pose: Rows, rows: Rows) -> Rows:
+    """Rows of position and quaternion that are given in a frame at `pose`, where the pose is given."""
+    if is_same(pose):
+        return rows
+    turn = np.broadcast_to(of_matrix(pose[:3, :3]), (len(rows), 4))
+    return np.column_stack([pose[:3, 3] + rotated(turn, rows[:, :3]), product(turn, rows[:, 3:])])
 
 
 def told_axes(given: Rows, expected: Rows, quaternions: Rows) -> str:
@@ -60,10 +89,8 @@ def told_axes(given: Rows, expected: Rows, quaternions: Rows) -> str:
     return best if errors[best] < _FITTING * apart else ""
 
 
-def _inverse_pose(q: Rows) -> Rows:
-    """From the world to the frame of the base."""
+def _matrix(q: Rows) -> Rows:
+    """The pose of a base against its joint."""
     pose = np.eye(4)
-    back = inverse(np.asarray(q[3:7]))
-    pose[:3, :3] = rotated(back, np.eye(3)).T
-    pose[:3, 3] = -rotated(back, np.asarray(q[:3]))
+    pose[:3, :3], pose[:3, 3] = rotated(np.asarray(q[3:7]), np.eye(3)).T, q[:3]
     return pose

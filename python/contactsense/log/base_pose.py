@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from .. import _core
 from ..errors import InputError
 from .base_columns import ORIENTATION, base_columns, child_frame
-from .base_frames import carried_links, is_base
+from .base_frames import base_frames, is_same, placed
 from .base_twist import twist_of
+from .blocks import Block
 from .choice import Group
-from .components import Block
 from .formats.messages import BASE_KINDS
 from .held import Extra, Series, series_of
 from .quantities import CURRENT, EXTERNAL, TORQUE
@@ -43,27 +43,29 @@ def base_rows(
     Raises:
         InputError: nothing says where the base is, or several do.
     """
-    links = carried_links(robot)
-    own = {name: is_base(place) for name, place in links.items()}
-    found = base_columns(recording, robot, own, columns)
+    frames = base_frames(robot)
+    found = base_columns(recording, robot, frames, columns)
     for block in (found.pose, found.twist):
         if block is not None:
             block.check_frames("columns")
     extra = Extra.none(axis)
     poses = _poses(series_of(recording, found.pose, time_column), found.pose, extra)
-    place, note = _place(found.pose, links, robot)
+    place, note = _place(found.pose, frames.links, robot)
+    origin = frames.origin.copy()
     extra.chosen.append(f"pose of the base from {found.pose.title}{note}")
     if found.pose.kind is ORIENTATION:
         extra.chosen.append(_REST)
-        place[:3, 3] = 0.0
-    base = [name for name in own if own[name] and is_base(place)]
+        place[:3, 3], origin[:3, 3] = 0.0, 0.0
+    base = frames.own if is_same(place) else []
     twist = twist_of(recording, found, poses, base, time_column, extra)
     pose_rows = extra.hold(poses, axis, "pose of the base", "columns")
     twist_rows, moving = twist.at(axis)
     if found.twist is not None and twist.time is not poses.time:
         twist_rows = extra.hold(twist, axis, "velocity of the base", "columns")
     extra.known &= moving
-    extra.values |= _of_base(pose_rows, twist_rows, place)
+    pose_rows, twist_rows = _of_base(pose_rows, twist_rows, place)
+    pose_rows = placed(np.asarray(np.linalg.inv(origin), np.float64), pose_rows)
+    extra.values |= {POSITION: pose_rows[:, :3], QUATERNION: continuous(pose_rows[:, 3:]), TWIST: twist_rows}
     used = [found.pose.table, found.pose.table if found.twist is None else found.twist.table]
     others = [it for it in recording.tables if it.kind in BASE_KINDS and not any(it is one for one in used)]
     why = "the base is known without it"
@@ -118,24 +120,20 @@ def _place(block: Block, links: Mapping[str, Rows], robot: _core.Robot) -> tuple
     frame = child_frame(block)
     known = next((it for it in (frame, frame.rpartition("/")[2]) if it in links), None)
     if known is not None:
-        note = "" if is_base(links[known]) else f", which is that of '{known}', moved to the base"
+        note = "" if is_same(links[known]) else f", which is that of '{known}', moved to the base"
         return links[known].copy(), note
     if {frame, frame.rpartition("/")[2]} & set(robot.all_link_names):
         raise InputError(f"columns: {block.title} is the pose of '{frame}', which moves against the base")
     return np.eye(4), f"; the robot has no frame '{frame}', which is taken as the base" if frame else ""
 
 
-def _of_base(poses: Rows, twists: Rows, place: Rows) -> dict[str, Rows]:
+def _of_base(poses: Rows, twists: Rows, place: Rows) -> tuple[Rows, Rows]:
     """From the measured frame, which is at `place` in the base's, to the base."""
-    if is_base(place):
-        return {POSITION: poses[:, :3], QUATERNION: poses[:, 3:], TWIST: twists}
+    if is_same(place):
+        return poses, twists
     turn, offset = of_matrix(place[:3, :3]), place[:3, 3]
     quaternions = product(poses[:, 3:], inverse(turn))
     position = poses[:, :3] - rotated(quaternions, np.broadcast_to(offset, (len(poses), 3)))
     angular = rotated(turn, twists[:, 3:])
     linear = rotated(turn, twists[:, :3]) - np.cross(angular, offset)
-    return {
-        POSITION: position,
-        QUATERNION: continuous(quaternions),
-        TWIST: np.column_stack([linear, angular]),
-    }
+    return np.column_stack([position, quaternions]), np.column_stack([linear, angular])

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from .base_columns import ANGULAR, BaseColumns, child_frame
 from .base_frames import told_axes
-from .components import Block
+from .blocks import Block
 from .held import Extra, Series, series_of
 from .quaternions import inverse, product, rotated, rotation_vectors
 from .recording import Recording

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 from ..errors import InputError
 from .base_columns import BASE_POSE, BASE_TWIST
-from .components import WRENCH, blocks
+from .blocks import blocks
+from .components import WRENCH
 from .joint_names import match
 from .quantities import CURRENT, EXTERNAL, POSITION, QUANTITIES, TORQUE, meaning
 from .recording import Column, Recording, Table, listing

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from .components import Block
+from .blocks import Block
 from .recording import Recording
 from .time_axis import GAP, TimeAxis, held, time_of
 

@@ -49,7 +49,7 @@ def rotation_vectors(quaternions: Rows) -> Rows:
 
 
 def of_matrix(rotation: Rows) -> Rows:
-    """`(4,)` of a rotation matrix `(3, 3)`."""
+    """`(4,)` of a rotation matrix `(3, 3)`, with a `w` that is not negative."""
     # The eigenvector of the largest eigenvalue; Bar-Itzhack 2000.
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rotation
     symmetric = np.array(
@@ -60,7 +60,8 @@ def of_matrix(rotation: Rows) -> Rows:
             [zy - yz, xz - zx, yx - xy, xx + yy + zz],
         ]
     )
-    return np.asarray(np.linalg.eigh(symmetric)[1][:, -1])
+    found = np.linalg.eigh(symmetric)[1][:, -1]
+    return np.asarray(found if found[3] >= 0.0 else -found)
 
 
 def slerp(time: Rows, quaternions: Rows, even: Rows) -> Rows:

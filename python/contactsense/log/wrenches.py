@@ -8,7 +8,8 @@ import numpy as np
 
 from .. import _core
 from ..errors import InputError
-from .components import WRENCH, Block, blocks, named_block, titles
+from .blocks import Block, blocks, named_block, titles
+from .components import WRENCH
 from .held import Extra, series_of
 from .joint_names import Tokens, words
 from .recording import Recording

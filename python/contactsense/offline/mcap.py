@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from .. import _core
 from .._extras import require
 from ..log import Log
-from ..log.base_frames import base_link
+from ..log.base_frames import base_frames, placed
 from ..log.joint_columns import JointColumns
 from .whole import whole_file
 
@@ -146,15 +146,17 @@ def _all(
     """All messages in the order of time."""
     joints = JointColumns(robot)
     names = list(joints.names)
-    base = base_link(robot) if robot.floating_base else ""
+    frames = base_frames(robot) if robot.floating_base else None
+    base_poses = log.q[:, :7] if frames is None else placed(frames.origin, log.q[:, :7])
+    base_link = "" if frames is None else next(iter(frames.own), "")
     position = joints.positions(log.q)
     columns = [joints.velocities(rows) for rows in (log.v, ticks["external_torque"])]
     effort = None if log.tau is None else joints.velocities(log.tau)
     first = np.searchsorted(found["row"], np.arange(len(ticks["time"]) + 1))
     step = float(np.median(np.diff(log.time))) if len(log) > 1 else 0.0
     for row, time in enumerate(ticks["time"].tolist()):
-        if robot.floating_base:
-            yield time, BASE, messages.odometry(time, log.q[row], log.v[row], base)
+        if frames is not None:
+            yield time, BASE, messages.odometry(time, base_poses[row], log.v[row], base_link)
         own_effort = None if effort is None else effort[row]
         yield (
             time,
