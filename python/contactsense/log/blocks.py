@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from ..errors import InputError
-from .components import Kind
+from .components import DIGITS, Kind
 from .joint_names import Tokens, words
 from .quantities import NOT_MEASURED
 from .recording import Recording, Table, listing
@@ -111,7 +111,7 @@ def _named(table: Table, kind: Kind, given: str | Sequence[str]) -> list[Block]:
     pattern = given.replace("[", "[[]")
     matching = [name for name in table.columns if star and fnmatch.fnmatchcase(name, pattern)]
     numbers = {name[len(before) : len(name) - len(after)]: name for name in matching}
-    in_order = sorted(filter(str.isdecimal, numbers), key=int)
+    in_order = sorted((it for it in numbers if it.isdecimal() and len(it) <= DIGITS), key=int)
     if len(in_order) == len(numbers) == len(kind.order):
         return [Block(kind, table, tuple(numbers[number] for number in in_order), ())]
     return _of_columns(table, kind, matching)

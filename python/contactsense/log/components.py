@@ -9,8 +9,8 @@ from functools import cached_property
 from .joint_names import Tokens, words
 
 _AXES = "xyz"
-# Of the number of a component.
-_DIGITS = 9
+# Digits of a number: one with more counts no components.
+DIGITS = 9
 
 
 @dataclass(frozen=True)
@@ -38,8 +38,8 @@ class Kind:
         """The component that a name tells, and the words of the name before and after."""
         if self._telling.isdisjoint(name):
             return None
-        if len(name) > 1 and name[-1].isdecimal():
-            number = int(name[-1][:_DIGITS])
+        if len(name) > 1 and name[-1].isdecimal() and len(name[-1]) <= DIGITS:
+            number = int(name[-1])
             if name[-2] in self.numbered and number < len(self.order):
                 return self.order[number], name[:-1], ()
             if number < len(_AXES):  # of an array of a vector
