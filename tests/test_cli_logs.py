@@ -6,6 +6,7 @@ import json
 from importlib import import_module
 from pathlib import Path
 
+import humanoid_logs
 import numpy as np
 import pytest
 from log_files import arm, named_columns, pushed, write_csv
@@ -204,3 +205,48 @@ def test_the_touches_of_a_public_log_are_found(capsys: pytest.CaptureFixture[str
     assert run(["replay", log, *described, "--threshold", "1", "--bias-time", "1", "--json"]) == 0
     contacts = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert 13 <= len(contacts) <= 17
+
+
+def test_replay_of_a_humanoid_with_sensors(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = humanoid_logs.table(tmp_path, "csv")
+    sensors = ["--sensor", "left_foot=l_foot", "--sensor", "right_foot=r_foot@right_foot_*"]
+    wanted = ["--wanted", "left_foot", "--wanted", "right_foot"]
+    levels = ["--threshold", "3", "--wrench-threshold", "10"]
+    command = ["replay", str(file), "--robot", "atlas", *levels, *sensors]
+    assert run([*command, *wanted, "--json", "--out", str(tmp_path / "out")]) == 0
+    told = capsys.readouterr()
+    (line,) = told.out.splitlines()
+    assert json.loads(line)["link"] == "utorso"
+    assert "wrench of 'right_foot' from 'right_foot_force_x' to 'right_foot_torque_z'" in told.err
+    assert (tmp_path / "out" / "replay.mcap").exists()
+    # The weight on the feet is a contact unless it is said to be wanted.
+    assert run([*command, "--json"]) == 0
+    assert any(json.loads(line)["start"] < 0.1 for line in capsys.readouterr().out.splitlines())
+
+
+def test_a_urdf_may_have_a_floating_base(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = humanoid_logs.table(tmp_path, "csv")
+    urdf = Path(cs.__file__).with_name("descriptions") / "atlas.urdf"
+    command = ["replay", str(file), "--robot", str(urdf), "--threshold", "1e6", "--json"]
+    assert run([*command, "--floating-base"]) == 0
+    assert "pose of the base from 'base_x' to 'base_qw'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        (["--sensor", "wrist="], "sensor: must be LINK, NAME=LINK or NAME=LINK@TOPIC, not 'wrist='"),
+        (["--sensor", "nosuch"], "sensors: 'nosuch' is at 'nosuch', which the robot does not have"),
+        (["--sensor", "iiwa_link_7"], "no wrench is named as 'iiwa_link_7'"),
+        (["--sensor", "a=iiwa_link_7", "--sensor", "a=iiwa_link_6"], "sensors: 'a' is there twice"),
+        (["--sensor-convention", "up"], "sensor-convention: must be load or support, not 'up'"),
+        (["--wanted", "wrist"], "wanted_contacts"),
+    ],
+)
+def test_an_error_in_sensors_is_a_line(
+    file: Path, more: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(replay(file, *more)) == 2
+    told = capsys.readouterr()
+    assert message in told.err
+    assert "Traceback" not in told.err

@@ -326,3 +326,21 @@ def test_places_are_those_of_the_contacts(whole: Path) -> None:
     assert sorted(zip(links, *points.T.tolist(), forces.tolist(), strict=True)) == found
     assert len(links) == LOGS
     assert places_of(whole, "another")[0] == []
+
+
+def test_logs_with_sensors(tmp_path: Path) -> None:
+    """Sensors are settings, too: given by a topic, which is part of the fingerprint."""
+    rows = pushed()[:300]
+    names = [str(number) for number in range(1, 8)]
+    words = {"position": "pos", "velocity": "vel", "torque": "effort"}
+    wrench = {f"ft_{name}": np.full(len(rows), 0.1) for name in ("fx", "fy", "fz", "tx", "ty", "tz")}
+    log = write_csv(tmp_path / "log.csv", {"time": rows.time, **named_columns(rows, names, words), **wrench})
+    sensors = ["--sensor", "wrist=iiwa_link_7@ft_*"]
+    folder = tmp_path / "found"
+    assert run(command([log], folder, "--engine", "local", *sensors)) == 0
+    before = content(folder)
+    assert run(command([log], folder, "--engine", "local", *sensors)) == 0
+    assert content(folder) == before
+    assert run(command([log], folder, "--engine", "local")) == 0
+    assert content(folder).keys() == before.keys()
+    assert content(folder) != before

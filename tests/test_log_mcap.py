@@ -9,6 +9,7 @@ import pytest
 from bag_files import CUTS, JOINT_STATE, MUTATIONS, joint_state, messages, mutated, write_mcap
 from mcap.reader import make_reader
 from robots import SHARED
+from ros_messages import Writer
 
 from contactsense import InputError
 from contactsense.log.formats import collect, mcap_file
@@ -47,6 +48,18 @@ def test_all_messages_come_back(form, encoding, tmp_path):
     assert set(finger.columns) - {"header.seq"} == {"header.stamp", "position[finger]"}
     np.testing.assert_array_equal(finger.columns["position[finger]"], np.arange(0, 60, 3))
     assert table(found, "/wrench", "wrench.torque.z").rows == 60
+
+
+@pytest.mark.parametrize("encoding", ["cdr", "ros1"])
+def test_frames_that_messages_name_are_kept(encoding, tmp_path):
+    writer = Writer(encoding)
+    given = [writer.odometry("/odom", 0.001 * i, np.eye(7)[6], np.zeros(6), "hull") for i in range(9)]
+    given += [writer.wrench("/ft", 0.001 * i, np.ones(6), f"frame{i % 12}") for i in range(99)]
+    odometry, force = mcap_file.read(write_mcap(tmp_path / "a.mcap", given, encoding)).tables
+    assert odometry.frames == {"header.frame_id": ("odom",), "child_frame_id": ("hull",)}
+    # Many names are no frame of measurements; a few of them say so.
+    assert force.frames == {"header.frame_id": tuple(f"frame{i}" for i in range(8))}
+    assert force.rows == 99
 
 
 def test_other_topics_are_read_when_wanted(tmp_path):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import fnmatch
 import logging
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import partial, wraps
 from inspect import Signature, signature
@@ -14,6 +14,7 @@ from typing import Annotated, Any, Literal, get_type_hints
 
 import typer
 
+from .._core import ForceTorqueSensor
 from ..errors import InputError
 from ..log import Log, read_log
 from ..robot import DESCRIPTIONS, Robot
@@ -35,6 +36,10 @@ LockedOption = Annotated[
         help="JOINT, JOINT=POSITION, or a pattern such as 'hand_*': joints that do not move.",
     ),
 ]
+FloatingOption = Annotated[
+    bool,
+    typer.Option("--floating-base", help="The root link of the URDF moves freely, as that of a humanoid."),
+]
 GeometryOption = Annotated[
     str, typer.Option("--geometry", help="Shapes of the surface: collision, visual or collision_or_visual.")
 ]
@@ -43,7 +48,7 @@ ColumnOption = Annotated[
     typer.Option(
         "--column",
         help="QUANTITY=NAME, such as position='actual_q_*', with * for the joint; quantities are time, "
-        "position, velocity, torque, external_torque, current; may be repeated.",
+        "position, velocity, torque, external_torque, current, base_pose, base_twist; may be repeated.",
     ),
 ]
 TopicOption = Annotated[
@@ -72,6 +77,7 @@ class LogOptions:
     robot: RobotOption
     package_dir: PackageOption = None
     lock: LockedOption = None
+    floating_base: FloatingOption = False
     geometry: GeometryOption = "collision"
     column: ColumnOption = None
     topic: TopicOption = None
@@ -92,6 +98,7 @@ class LogOptions:
             Robot.from_urdf,
             self.robot,
             package_dirs=self.package_dir or [],
+            floating_base=self.floating_base,
             geometry=shapes,
             missing_meshes="warn",
         )
@@ -107,7 +114,7 @@ class LogOptions:
             joints.update(dict.fromkeys(matching, _number("lock", value)))
         return load(locked_joints=joints)
 
-    def reading(self) -> dict[str, Any]:
+    def reading(self, sensors: Mapping[ForceTorqueSensor, str | None] | None = None) -> dict[str, Any]:
         """Arguments of `read_log` by name."""
         constants: list[float] | float | None = None
         if self.torque_constants is not None:
@@ -119,11 +126,14 @@ class LogOptions:
             "units": pairs("unit", self.unit),
             "torque_constants": constants,
             "rate": self.rate,
+            "sensors": sensors or {},
         }
 
-    def load_log(self, path: Path, robot: Robot) -> Log:
-        """The log of a file; what was chosen is printed on stderr."""
-        log = read_log(path, robot, **self.reading())
+    def load_log(
+        self, path: Path, robot: Robot, sensors: Mapping[ForceTorqueSensor, str | None] | None = None
+    ) -> Log:
+        """The log of a file with the readings of sensors; what was chosen is printed on stderr."""
+        log = read_log(path, robot, **self.reading(sensors))
         print(log.reading, file=sys.stderr)
         return log
 

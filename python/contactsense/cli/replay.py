@@ -21,6 +21,7 @@ from .exit_codes import DAMAGED, INTERRUPTED
 from .fleet import replay_in_parallel
 from .log_options import LogOptions, with_log_options
 from .progress import progress_bar
+from .sensor_options import ConventionOption, SensorOption, WantedOption, sensors_of
 
 # A robot that is touched for more of the time than this is rather one whose model is wrong.
 _OFTEN = 0.5
@@ -50,6 +51,12 @@ def command(
         float | None,
         typer.Option(help="Time constant in s of the bias that is learnt without contact (default: none)."),
     ] = None,
+    sensor: SensorOption = None,
+    sensor_convention: ConventionOption = "load",
+    wanted: WantedOption = None,
+    wrench_threshold: Annotated[
+        float, typer.Option(help="Wrench at a sensor that is a contact, in N and Nm.")
+    ] = 2.0,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -89,7 +96,17 @@ def command(
     if png is not None and len(logs) > 1 and engine is None:
         raise InputError(f"png: is a picture of one log, and there are {len(logs)}")
     png = optional_picture("png", png)
-    arguments = monitor_arguments(calibration, threshold, gain, bias_time)
+    sensors = sensors_of(sensor, sensor_convention)
+    arguments: dict[str, Any] = {
+        "sensors": list(sensors),
+        "wanted_contacts": wanted or [],
+        "wrench_threshold": wrench_threshold,
+        "observer_gain": gain,
+        "bias_time_constant": bias_time,
+        "calibration": None if calibration is None else Calibration.load(calibration),
+    }
+    if threshold is not None:
+        arguments["torque_threshold"] = threshold
     if engine is not None:
         if out is None:
             raise InputError("out: --engine needs the folder of the data set")
@@ -98,7 +115,7 @@ def command(
             options.load_robot(),
             out,
             name=name,
-            reading=options.reading(),
+            reading=options.reading(sensors),
             monitor=arguments,
             ticks=ticks,
             engine=engine,
@@ -115,7 +132,7 @@ def command(
     loaded = options.load_robot()
     code = 0
     for path in logs:
-        log = options.load_log(path, loaded)
+        log = options.load_log(path, loaded, sensors)
         monitor = monitor_of(log, loaded, **arguments)
         with progress_bar(path.name, as_json) as show:
             result = replay(log, monitor, on_progress=show)
@@ -132,20 +149,6 @@ def command(
             code = DAMAGED
     if code:
         raise typer.Exit(code)
-
-
-def monitor_arguments(
-    calibration: Path | None, threshold: float | None, gain: float, bias_time: float | None
-) -> dict[str, Any]:
-    """Arguments of `ContactMonitor` by name."""
-    arguments: dict[str, Any] = {"observer_gain": gain}
-    if calibration is not None:
-        arguments["calibration"] = Calibration.load(calibration)
-    if threshold is not None:
-        arguments["torque_threshold"] = threshold
-    if bias_time is not None:
-        arguments["bias_time_constant"] = bias_time
-    return arguments
 
 
 def print_contacts(path: Path, result: Replay, as_json: bool) -> None:

@@ -48,15 +48,19 @@ class Settings:
     @cached_property
     def _digest(self) -> str:
         parts = [_core.__version__, self.name, self.robot, self.reading, self.monitor, self.ticks]
-        return _digest(json.dumps(parts, sort_keys=True, default=_plain).encode())
+        return _digest(json.dumps(_plain(parts)).encode())
 
 
 def _plain(value: Any) -> Any:
-    """Arrays as lists, paths as text; robots, calibrations and sensors by what they are pickled as."""
+    """Equal for equal settings; robots, calibrations and sensors are what they are pickled as."""
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
     if isinstance(value, Mapping):
-        return dict(value)
+        return sorted(([_plain(key), _plain(each)] for key, each in value.items()), key=str)
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
     return str(value) if isinstance(value, Path) else _digest(pickle.dumps(value))
 
 

@@ -8,12 +8,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ..errors import InputError
+from .base_columns import BASE_POSE, BASE_TWIST
+from .blocks import blocks
+from .components import WRENCH
 from .joint_names import match
 from .quantities import CURRENT, EXTERNAL, POSITION, QUANTITIES, TORQUE, meaning
-from .recording import Column, Recording, Table
+from .recording import Column, Recording, Table, listing
 
 # What `columns` may name.
-COLUMNS = ("time", *QUANTITIES)
+COLUMNS = ("time", *QUANTITIES, BASE_POSE, BASE_TWIST)
 
 
 @dataclass(frozen=True)
@@ -80,21 +83,12 @@ def _nothing(what: str, joints: Sequence[str], recording: Recording) -> str:
     return f"columns: nothing holds {what} of {of_joints}; there are {listing(recording)}"
 
 
-def listing(recording: Recording) -> str:
-    """The first columns of all tables, for messages."""
-    shown = 12
-    tables = []
-    for table in recording.tables:
-        names = [f"'{name}'" for name in list(table.columns)[:shown]]
-        more = len(table.columns) - shown
-        tables.append(f"{table.name}: {', '.join(names)}{f' and {more} more' if more > 0 else ''}")
-    return "; ".join(tables) or "no columns of numbers"
-
-
 def _groups(table: Table, joints: Sequence[str]) -> list[Group]:
     by_source: dict[tuple[str, str], dict[str, str]] = {}
+    # A wrench's torque is none of joints.
+    forces = {column for block in blocks([table], WRENCH) for column in block.columns}
     for column in table.columns:
-        told = meaning(column)
+        told = None if column in forces else meaning(column)
         if told is not None:
             by_source.setdefault((told.quantity, told.source), {})[told.joint] = column
     groups = []

@@ -53,5 +53,8 @@ class JointColumns:
         return np.column_stack(angles)
 
     def velocities(self, v: Rows) -> Rows:
-        """`(n, joints)` of velocities or torques `(n, nv)`: the inverse of `velocity`."""
-        return np.ascontiguousarray(v[:, self._v])
+        """`(n, joints)` of velocities or torques `(n, nv)`: the inverse of `velocity`.
+
+        Torques may lack those of a floating base, `(n, nv - 6)`.
+        """
+        return np.ascontiguousarray(v[:, np.array(self._v) - (self._nv - v.shape[1])])

@@ -20,11 +20,11 @@ class Log:
 
     Args:
         time: `(n,)`, strictly increasing [s].
-        q: `(n, nq)`, positions [rad; m for sliding joints].
+        q: `(n, nq)`, positions [rad; m for sliding joints]; a floating base first, as in `Robot`.
         v: `(n, nv)`, velocities [rad/s; m/s for sliding joints].
         tau: `(n, nv)`, or `(n, nv - 6)` for a floating base: torques of the motors [Nm; N for sliding
             joints]; none where only an external torque was recorded.
-        wrenches: `(n, sensors, 6)`, readings of force/torque sensors [N, Nm].
+        wrenches: `(n, sensors, 6)`, readings of force/torque sensors, force first, in their frames [N, Nm].
         external_torque: `(n, nv)`, the external torque as the robot's vendor estimates it [Nm].
         reading: how it was read from a file; None for a log of arrays.
 

@@ -26,7 +26,7 @@ _PHRASES = {
 _BY_WORDS = {words(phrase): quantity for quantity, them in _PHRASES.items() for phrase in them.split(",")}
 _LONGEST = max(map(len, _BY_WORDS))
 # What was asked for is not what was measured.
-_NOT_MEASURED = frozenset(
+NOT_MEASURED = frozenset(
     {"target", "desired", "des", "d", "cmd", "command", "commanded", "ref", "reference", "goal", "setpoint"}
     | {"error", "err", "limit", "max", "min", "std"}
 )
@@ -56,7 +56,7 @@ def meaning(column: str) -> Meaning | None:
     if indexed is not None:
         return _of_field(indexed["field"], indexed["key"])
     all_words = words(column)
-    if _NOT_MEASURED & set(all_words):
+    if NOT_MEASURED & set(all_words):
         return None
     unit = all_words[-1] if all_words and all_words[-1] in _UNITS and len(all_words) > 2 else ""
     named = all_words[:-1] if unit else all_words
@@ -70,7 +70,7 @@ def meaning(column: str) -> Meaning | None:
 def _of_field(field: str, key: str) -> Meaning | None:
     """Of an element of an array, by the last words of its path that tell a quantity."""
     path = [words(part) for part in field.split(".")]
-    if any(_NOT_MEASURED & set(part) for part in path):
+    if any(NOT_MEASURED & set(part) for part in path):
         return None
     external = any(_BY_WORDS.get(part) == EXTERNAL for part in path)
     quantity = _BY_WORDS.get(path[-1]) or _ending(path[-1])

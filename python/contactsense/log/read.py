@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,13 @@ from numpy.typing import ArrayLike
 from .. import _core
 from ..errors import InputError
 from .log import Log
+
+# Each sensor or its name, and where its readings are: a topic, a pattern of columns or all six; None to find
+# out.
+Sensors = (
+    Iterable["_core.ForceTorqueSensor | str"]
+    | Mapping["_core.ForceTorqueSensor | str", "str | Sequence[str] | None"]
+)
 
 
 def read_log(
@@ -23,6 +30,7 @@ def read_log(
     units: Mapping[str, str] | None = None,
     torque_constants: ArrayLike | Mapping[str, float] | None = None,
     rate: float | None = None,
+    sensors: Sensors = (),
 ) -> Log:
     r"""A robot's log from a file: rosbag2, rosbag1, MCAP, CSV, Parquet, NumPy or MATLAB v7.3.
 
@@ -35,16 +43,24 @@ def read_log(
 
     Args:
         path: the file, the folder of a bag, or several files that together have the columns.
-        robot: with a fixed base.
+        robot: with a fixed base, or one that floats: its pose is that of `nav_msgs/Odometry`,
+            `geometry_msgs/PoseStamped` or `sensor_msgs/Imu`, or of columns such as `base_x` and `base_qw`;
+            its velocity is what these or a `TwistStamped` have, or the differences of the pose.
         columns: what columns hold, by quantity: "time", "position", "velocity", "torque", "external_torque",
             "current"; each a pattern with `*` in place of the joint's name or number, such as `"actual_q_*"`,
-            or one name for each of `robot.actuated_joint_names`.
+            or one name for each of `robot.actuated_joint_names`. Also "base_pose" and "base_twist": a topic,
+            a pattern, or all columns, of position and quaternion x y z w, of linear and angular velocity.
         topics: topics of a bag, or names of tables, that alone are looked at.
         units: by quantity: "rad" or "deg", "rad/s" or "deg/s", "Nm" or "mNm", "A" or "mA".
         torque_constants: torque for each unit of the recorded torque or current [Nm/A], signs and gear ratios
             included; one number, one for each of `robot.actuated_joint_names`, or by name. Needed for
             currents.
         rate: of a log that is interpolated to equal steps [1/s]; None keeps the rows.
+        sensors: the `ForceTorqueSensor`s, or their names, that `Log.wrenches` has, in this order, such as
+            `monitor.sensors`. Readings are found by their frame, topic or columns. Where names do not tell, a
+            mapping from each to its topic, a pattern with `*` in place of the component, such as `"ft_*"`, or
+            six columns; None to find them. Readings must be in the frame of the sensor [N, Nm], as they are
+            for the monitor: messages of another frame of the robot are refused.
 
     Returns:
         A `Log`; of a damaged file, what could be read, with `Log.reading.damage`.
@@ -68,14 +84,14 @@ def read_log(
     from .choice import COLUMNS
     from .files import read_recording
     from .robot_log import Wishes, robot_log
+    from .sensors import wanted_sensors
     from .torque_constants import check_constants
     from .units import check_units
 
     if not isinstance(robot, _core.Robot):
         raise InputError(f"robot: expected a contactsense.Robot, got {type(robot).__name__}")
-    if robot.floating_base:
-        raise InputError("robot: read_log needs a fixed base; make a Log of arrays for a robot that floats")
     columns, units = dict(columns or {}), dict(units or {})
+    wanted = wanted_sensors(sensors, robot)
     for name in columns:
         if name not in COLUMNS:
             raise InputError(f"columns: there is no {name!r}; there are {', '.join(COLUMNS)}")
@@ -86,4 +102,4 @@ def read_log(
     constants = check_constants(torque_constants, robot.actuated_joint_names)
     recording = read_recording([Path(each) for each in paths], topics)
     title = ", ".join(os.fspath(each) for each in paths)
-    return robot_log(title, recording, robot, Wishes(columns, units, constants, rate))
+    return robot_log(title, recording, robot, Wishes(columns, units, constants, rate, wanted))

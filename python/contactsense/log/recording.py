@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,12 +22,14 @@ class Table:
             elements of arrays are named as `tau_J[0]`, and those of a `JointState` by joint, as
             `position[panda_joint1]`. The message's own stamp is `header.stamp` [s].
         received: `(n,)`, when each message was received [s]; None for files other than bags.
+        frames: the names of frames in the messages, by field: `header.frame_id`, `child_frame_id`.
     """
 
     name: str
     kind: str
     columns: Mapping[str, Column]
     received: Column | None = None
+    frames: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @property
     def rows(self) -> int:
@@ -50,3 +52,14 @@ class Recording:
     tables: tuple[Table, ...]
     left_out: tuple[str, ...] = ()
     damage: tuple[str, ...] = ()
+
+
+def listing(recording: Recording) -> str:
+    """The first columns of all tables, for messages."""
+    shown = 12
+    tables = []
+    for table in recording.tables:
+        names = [f"'{name}'" for name in list(table.columns)[:shown]]
+        more = len(table.columns) - shown
+        tables.append(f"{table.name}: {', '.join(names)}{f' and {more} more' if more > 0 else ''}")
+    return "; ".join(tables) or "no columns of numbers"

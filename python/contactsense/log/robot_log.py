@@ -10,20 +10,21 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..errors import InputError
+from .base_pose import base_rows, left_out_by_base, write_base
 from .choice import Group, choose
+from .held import LARGEST
 from .joint_columns import JointColumns
 from .log import Log
 from .quantities import CURRENT, EXTERNAL, POSITION, TORQUE, VELOCITY
 from .reading import Reading
 from .recording import Recording, Table
 from .resample import at_rate, differences
+from .sensors import WantedSensor
 from .time_axis import TimeAxis, held, time_of
 from .units import scale, unit_of, velocity_unit
+from .wrenches import WRENCHES, wrench_rows
 
 Rows = NDArray[np.float64]
-
-# No measurement is as large as this, in whatever unit: what is there is a broken file.
-_LARGEST = 1e12
 
 
 @dataclass(frozen=True)
@@ -34,6 +35,7 @@ class Wishes:
     units: Mapping[str, str]
     torque_constants: NDArray[np.float64] | None
     rate: float | None
+    sensors: tuple[WantedSensor, ...]
 
     @property
     def time(self) -> str | None:
@@ -45,14 +47,18 @@ class Wishes:
 def robot_log(path: str, recording: Recording, robot: _core.Robot, wishes: Wishes) -> Log:
     """The log of what a recording has of a robot; see `read_log`."""
     joints = JointColumns(robot)
-    named = {name: value for name, value in wishes.columns.items() if name != "time"}
-    groups = choose(recording, joints.names, named)
+    groups = choose(recording, joints.names, wishes.columns)
+    left_out = [*recording.left_out, *left_out_by_base(recording, groups, robot.floating_base)]
     if TORQUE in groups:
         groups.pop(CURRENT, None)
     for group in groups.values():
         _check_complete(group, joints.names)
     axis = time_of(recording, groups[POSITION].table, wishes.time)
     values, known = _values(recording, groups, axis, joints.names, wishes.time)
+    extra = wrench_rows(recording, robot, wishes.sensors, axis, wishes.time)
+    if robot.floating_base:
+        extra.add(base_rows(recording, robot, wishes.columns, axis, wishes.time))
+    values, known = values | extra.values, known & extra.known
     if np.count_nonzero(known) < 2:
         raise InputError(
             f"path: {np.count_nonzero(known)} rows of {path} are complete; at least 2 are wanted"
@@ -60,8 +66,8 @@ def robot_log(path: str, recording: Recording, robot: _core.Robot, wishes: Wishe
     time = axis.time
     if not np.all(known):  # else they need not be copied
         time, values = time[known], {quantity: rows[known] for quantity, rows in values.items()}
-    chosen, mended = [axis.chosen], [*axis.mended, *_faults(known, values)]
-    chosen += _to_units(time, values, groups, joints, wishes)
+    mended = [*axis.mended, *_faults(known, {name: values[name] for name in groups}), *extra.mended]
+    chosen = [axis.chosen, *_to_units(time, values, groups, joints, wishes), *extra.chosen]
     if VELOCITY not in values:
         values[VELOCITY] = differences(time, values[POSITION])
         chosen.append("velocity: central differences of positions")
@@ -70,15 +76,20 @@ def robot_log(path: str, recording: Recording, robot: _core.Robot, wishes: Wishe
         chosen.append(f"interpolated to {wishes.rate:g} rows a second")
     unknown = list(dict.fromkeys(name for group in groups.values() for name in group.others))
     others = [f"columns of joints that the robot does not have: {', '.join(unknown)}"] if unknown else []
-    left_out = (*recording.left_out, *others)
+    left_out += [*extra.left_out, *others]
+    q, v = joints.configuration(values[POSITION]), joints.velocity(values[VELOCITY])
     torques = {name: joints.velocity(values[name]) for name in (TORQUE, EXTERNAL) if name in values}
+    if robot.floating_base:
+        write_base(q, v, values)
+        torques[TORQUE] = torques[TORQUE][:, 6:]
     return Log(
         time,
-        joints.configuration(values[POSITION]),
-        joints.velocity(values[VELOCITY]),
+        q,
+        v,
         torques.get(TORQUE),
+        wrenches=values[WRENCHES].reshape(len(q), -1, 6) if WRENCHES in values else None,
         external_torque=torques.get(EXTERNAL),
-        reading=Reading(path, tuple(chosen), tuple(mended), left_out, recording.damage),
+        reading=Reading(path, tuple(chosen), tuple(mended), tuple(left_out), recording.damage),
     )
 
 
@@ -112,7 +123,7 @@ def _values(
         rows, present = rows_of[id(group.table)]
         values[quantity] = np.column_stack([group.values(joint)[rows] for joint in joints])
         # A NaN is not less than anything.
-        known &= present & np.all(np.abs(values[quantity]) < _LARGEST, axis=1)
+        known &= present & np.all(np.abs(values[quantity]) < LARGEST, axis=1)
     return values, known
 
 

@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from .choice import listing
 from .joint_names import words
-from .recording import Column, Recording, Table
+from .recording import Column, Recording, Table, listing
 
 # In this order.
 _NAMES = (
@@ -25,7 +24,7 @@ _STEPS = (("s", 0.2), ("ms", 200.0), ("us", 2e5), ("ns", np.inf))
 # A message that is late arrives within so many others; a clock that was set back stays behind for longer.
 _LATE_ROWS = 10
 # A step of so many median ones is a gap.
-_GAP = 5.0
+GAP = 5.0
 # No clock shows more [s]: 30,000 years.
 _LATEST = 1e12
 # Stamps since 1970 are rounded to this [s].
@@ -64,7 +63,7 @@ def time_of(recording: Recording, table: Table, column: str | None) -> TimeAxis:
     repeated = int(np.count_nonzero(~kept))
     time, rows = time[kept], rows[kept]
     steps = np.diff(time)
-    gaps = steps[steps > _GAP * np.median(steps)] if len(steps) else steps
+    gaps = steps[steps > GAP * np.median(steps)] if len(steps) else steps
     notes = [
         (missing, f"{missing} rows without a time left out"),
         (jumps, f"the clock was set back {jumps} times; later rows follow on"),

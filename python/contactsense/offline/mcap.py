@@ -12,10 +12,12 @@ from numpy.typing import NDArray
 from .. import _core
 from .._extras import require
 from ..log import Log
+from ..log.base_frames import base_frames, placed
 from ..log.joint_columns import JointColumns
 from .whole import whole_file
 
 JOINT_STATES = "/joint_states"
+BASE = "/base"
 EXTERNAL_TORQUE = "/contactsense/external_torque"
 CONTACTS = "/contactsense/contacts"
 # Size of what is drawn: a hundred newtons are a metre, and a point is a ball of two centimetres [m].
@@ -49,6 +51,20 @@ class _Messages:
         none = np.zeros(0)
         position, velocity, effort = (none if it is None else it for it in values)
         return self._types["sensor_msgs/msg/JointState"](self.header(time), names, position, velocity, effort)
+
+    def odometry(self, time: float, q: NDArray[np.float64], v: NDArray[np.float64], base: str) -> Any:
+        make, none = self._types, np.zeros(36)
+        point, quaternion, pose, vector, twist = (
+            make[f"geometry_msgs/msg/{name}"] for name in ("Point", "Quaternion", "Pose", "Vector3", "Twist")
+        )
+        with_pose, with_twist = (
+            make[f"geometry_msgs/msg/{name}WithCovariance"] for name in ("Pose", "Twist")
+        )
+        place = pose(point(*q[:3].tolist()), quaternion(*q[3:7].tolist()))
+        speed = twist(vector(*v[:3].tolist()), vector(*v[3:6].tolist()))
+        return make["nav_msgs/msg/Odometry"](
+            self.header(time), base, with_pose(place, none), with_twist(speed, none)
+        )
 
     def marker(
         self, time: float, number: int, shape: int, points: list[Any], scale: Any, seconds: float
@@ -107,11 +123,14 @@ def write_mcap(
         writer: Any = Writer(stream)
         writer.start(profile="ros2", library="contactsense")
         channels = {}
-        for topic, kind in (
-            (JOINT_STATES, "sensor_msgs/msg/JointState"),
-            (EXTERNAL_TORQUE, "sensor_msgs/msg/JointState"),
-            (CONTACTS, "visualization_msgs/msg/MarkerArray"),
-        ):
+        kinds = {
+            JOINT_STATES: "sensor_msgs/msg/JointState",
+            EXTERNAL_TORQUE: "sensor_msgs/msg/JointState",
+            CONTACTS: "visualization_msgs/msg/MarkerArray",
+        }
+        if robot.floating_base:
+            kinds[BASE] = "nav_msgs/msg/Odometry"
+        for topic, kind in kinds.items():
             schema = writer.register_schema(kind, "ros2msg", messages.definition(kind))
             channels[topic] = (writer.register_channel(topic, "cdr", schema), kind)
         for number, (time, topic, message) in enumerate(_all(log, ticks, found, robot, messages)):
@@ -127,12 +146,17 @@ def _all(
     """All messages in the order of time."""
     joints = JointColumns(robot)
     names = list(joints.names)
+    frames = base_frames(robot) if robot.floating_base else None
+    base_poses = log.q[:, :7] if frames is None else placed(frames.origin, log.q[:, :7])
+    base_link = "" if frames is None else next(iter(frames.own), "")
     position = joints.positions(log.q)
     columns = [joints.velocities(rows) for rows in (log.v, ticks["external_torque"])]
     effort = None if log.tau is None else joints.velocities(log.tau)
     first = np.searchsorted(found["row"], np.arange(len(ticks["time"]) + 1))
     step = float(np.median(np.diff(log.time))) if len(log) > 1 else 0.0
     for row, time in enumerate(ticks["time"].tolist()):
+        if frames is not None:
+            yield time, BASE, messages.odometry(time, base_poses[row], log.v[row], base_link)
         own_effort = None if effort is None else effort[row]
         yield (
             time,

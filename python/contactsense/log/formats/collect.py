@@ -16,6 +16,7 @@ from .walk import Types, Walk
 BATCH_BYTES = 2**23  # of messages decoded at once: large enough for numpy, small beside a log
 MAX_LAYOUTS = 1000  # shapes of one topic: each costs a walk; a topic with more is no stream of measurements
 MAX_FAILURES = 200  # messages of one topic that fit no shape; from then on no new shapes are looked for
+MAX_FRAMES = 8  # different names of a frame kept of one topic: measurements have one
 MAX_MESSAGE = 2**26  # bytes of one unpacked message
 MAX_BREAKS = 20  # places of damage that are told one by one
 
@@ -30,6 +31,14 @@ class Rows:
     blocks: list[NDArray[np.float64]] = field(default_factory=list)
     times: list[Ints] = field(default_factory=list)
     orders: list[Ints] = field(default_factory=list)
+    frames: dict[str, dict[str, None]] = field(default_factory=dict)
+
+    def note_frames(self, layout: Layout, rows: NDArray[np.uint8]) -> None:
+        """Which frames the messages name."""
+        for frame in layout.frames:
+            known = self.frames.setdefault(frame.name, {})
+            if len(known) < MAX_FRAMES:
+                known.update(dict.fromkeys(frame.names(rows, MAX_FRAMES)))
 
     def table(self, topic: str, kind: str) -> Table:
         """All rows in the order of reception; empties the blocks."""
@@ -40,7 +49,8 @@ class Rows:
             by_time = np.lexsort((orders, times))
             columns = {name: column[by_time] for name, column in columns.items()}
             times = times[by_time]
-        return Table(topic, kind, columns, np.asarray(times * 1e-9, np.float64))
+        frames = {name: tuple(known) for name, known in self.frames.items()}
+        return Table(topic, kind, columns, np.asarray(times * 1e-9, np.float64), frames)
 
 
 @dataclass
@@ -123,6 +133,7 @@ class Channel:
         if table.names != layout.names:
             place = {name: i for i, name in enumerate(layout.names)}
             numbers = numbers[:, [place[name] for name in table.names]]
+        table.note_frames(layout, rows)
         table.blocks.append(numbers)
         table.times.append(times)
         table.orders.append(order)

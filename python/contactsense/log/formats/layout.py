@@ -24,6 +24,24 @@ class Read:
 
 
 @dataclass(frozen=True)
+class Frame:
+    """Where a message names a frame: the field, and its bytes."""
+
+    name: str
+    first: int
+    end: int
+
+    def names(self, rows: NDArray[np.uint8], most: int) -> list[str]:
+        """The different names in messages of one shape, at most so many."""
+        texts = rows[:, self.first : self.end]
+        found: list[str] = []
+        while len(texts) and len(found) < most:
+            found.append(texts[0].tobytes().rstrip(b"\0").decode("utf-8", "replace"))
+            texts = texts[(texts != texts[0]).any(axis=1)]
+        return found
+
+
+@dataclass(frozen=True)
 class Layout:
     """One shape of a message: the bytes that decide it, and where the numbers are."""
 
@@ -31,6 +49,7 @@ class Layout:
     shape: NDArray[np.intp]
     names: tuple[str, ...]
     reads: tuple[Read, ...]
+    frames: tuple[Frame, ...] = ()
 
     def fits(self, rows: NDArray[np.uint8]) -> NDArray[np.bool_]:
         """Which of the messages (one a row, of the example's length) have this shape."""

@@ -22,6 +22,17 @@ WANTED = frozenset(
         "control_msgs/msg/JointControllerState",
     }
 )
+# What says where a floating base is.
+BASE_KINDS = frozenset(
+    {
+        "nav_msgs/msg/Odometry",
+        "geometry_msgs/msg/PoseStamped",
+        "geometry_msgs/msg/PoseWithCovarianceStamped",
+        "geometry_msgs/msg/TwistStamped",
+        "geometry_msgs/msg/TwistWithCovarianceStamped",
+        "sensor_msgs/msg/Imu",
+    }
+)
 # Packages of the distributions themselves: what of them is not named above says nothing of joints or forces.
 COMMON_PACKAGES = frozenset(
     {
@@ -86,7 +97,7 @@ def normal_kind(kind: str) -> str:
 
 def default_wanted(kind: str, types: Types | None) -> bool:
     """Whether a type is read unless the caller says otherwise."""
-    if kind in WANTED:
+    if kind in WANTED or kind in BASE_KINDS:
         return True
     package = kind.split("/")[0]
     if package in COMMON_PACKAGES or "/srv/" in kind or "/action/" in kind:

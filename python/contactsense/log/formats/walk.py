@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .layout import Layout, LayoutError, Read
+from .layout import Frame, Layout, LayoutError, Read
 
 # A type as rosbags parses it: constants, then the fields by name.
 Types = dict[str, Any]
@@ -27,6 +27,8 @@ SIZES |= {"int64": 8, "uint64": 8, "float32": 4, "float64": 8}
 DTYPES = {"bool": "u1", "byte": "i1", "char": "u1"}
 DTYPES |= {name: f"{name[0]}{size}" for name, size in SIZES.items() if name not in DTYPES}
 
+# Texts that say in which frame the numbers are.
+FRAMES = frozenset({"header.frame_id", "child_frame_id"})
 # String sequences by these names label the elements of arrays beside and below them.
 LABELS = frozenset({"name", "names", "joint_names", "interface_names"})
 # What a type without fields has in ROS 2, where it is sent as one byte, but not in ROS 1.
@@ -56,6 +58,7 @@ class Walk:
         self.steps = 0
         self.names: list[str] = []
         self.reads: list[Read] = []
+        self.frames: list[Frame] = []
 
     def layout(self, kind: str) -> Layout:
         """The layout of the message, which is of the type `kind`."""
@@ -66,7 +69,7 @@ class Walk:
         shape = np.concatenate(spans) if spans else np.zeros(0, np.intp)
         if len(set(self.names)) != len(self.names):
             raise LayoutError("two of its numbers have one name")
-        return Layout(self.data, shape, tuple(self.names), tuple(self.reads))
+        return Layout(self.data, shape, tuple(self.names), tuple(self.reads), tuple(self.frames))
 
     def _take(self, size: int, count: int = 1) -> int:
         if self.is_cdr and count:
@@ -82,16 +85,18 @@ class Walk:
         self.shape.append((first, first + 4))
         return int.from_bytes(self.data[first : first + 4], "little" if self.order == "<" else "big")
 
-    def _string(self, is_shape: bool) -> str:
+    def _text(self) -> tuple[int, int]:
         length = self._length()
         first = self.at
         self.at += length
         if self.at > len(self.data):
             raise LayoutError("a text in it is longer than the message")
-        if not is_shape:
-            return ""
-        self.shape.append((first, self.at))
-        return self.data[first : self.at].rstrip(b"\0").decode("utf-8", "replace")
+        return first, self.at
+
+    def _label(self) -> str:
+        first, end = self._text()
+        self.shape.append((first, end))
+        return self.data[first:end].rstrip(b"\0").decode("utf-8", "replace")
 
     def _message(self, kind: str, path: str, labels: dict[int, list[str]], depth: int) -> None:
         fields = self.types.get(kind)
@@ -135,7 +140,9 @@ class Walk:
 
     def _base(self, base: str, path: str) -> None:
         if base == "string":
-            self._string(is_shape=False)
+            first, end = self._text()
+            if path in FRAMES:
+                self.frames.append(Frame(path, first, end))
             return
         if base not in SIZES:
             raise LayoutError(f"{base} is not read")
@@ -152,8 +159,12 @@ class Walk:
             self.steps += count
             if self.steps > MAX_STEPS:
                 raise LayoutError("it has too many fields")
-            texts = [self._string(is_shape=name in LABELS) for _ in range(count)]
-            if name in LABELS and len(set(texts)) == count and all(texts):
+            if name not in LABELS:
+                for _ in range(count):
+                    self._text()
+                return
+            texts = [self._label() for _ in range(count)]
+            if len(set(texts)) == count and all(texts):
                 labels.clear()  # the innermost labels are the ones that count
                 labels[count] = texts
             return
