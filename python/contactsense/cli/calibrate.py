@@ -13,12 +13,13 @@ from .._extras import require
 from .._pictures import optional_picture
 from ..calibration import calibrate
 from ..offline.residuals import residuals, settled
-from .log_options import LogOptions, with_log_options
+from .log_options import LogOptions
+from .shared_options import with_shared_options
 
 
 def register(parent: typer.Typer) -> None:
     """Adds `calibrate` to the command line."""
-    parent.command("calibrate")(with_log_options(command))
+    parent.command("calibrate")(with_shared_options(command))
 
 
 def command(

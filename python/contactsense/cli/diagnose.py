@@ -13,12 +13,13 @@ from .._extras import require
 from .._pictures import optional_picture
 from ..errors import InputError
 from ..offline.residuals import residuals
-from .log_options import LogOptions, with_log_options
+from .log_options import LogOptions
+from .shared_options import with_shared_options
 
 
 def register(parent: typer.Typer) -> None:
     """Adds `diagnose` to the command line."""
-    parent.command("diagnose")(with_log_options(command))
+    parent.command("diagnose")(with_shared_options(command))
 
 
 def command(

@@ -6,11 +6,10 @@ import fnmatch
 import logging
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
-from functools import partial, wraps
-from inspect import Signature, signature
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, Literal, get_type_hints
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -136,27 +135,6 @@ class LogOptions:
         log = read_log(path, robot, **self.reading(sensors))
         print(log.reading, file=sys.stderr)
         return log
-
-
-def with_log_options(command: Callable[..., None]) -> Callable[..., None]:
-    """A command whose argument `options` becomes the options of `LogOptions`."""
-
-    @wraps(command)
-    def wrapper(**given: Any) -> None:
-        shared = {field.name: given.pop(field.name) for field in fields(LogOptions)}
-        command(options=LogOptions(**shared), **given)
-
-    own = [it for it in signature(command).parameters.values() if it.name != "options"]
-    parameters = [*own, *signature(LogOptions).parameters.values()]
-    # Those of the command are read from its annotations, which must be no text.
-    hints = {
-        **get_type_hints(command, include_extras=True),
-        **get_type_hints(LogOptions, include_extras=True),
-    }
-    by_name = [it.replace(kind=it.KEYWORD_ONLY, annotation=hints[it.name]) for it in parameters]
-    wrapper.__signature__ = Signature(by_name)  # type: ignore[attr-defined]
-    wrapper.__annotations__ = {it.name: it.annotation for it in by_name}
-    return wrapper
 
 
 def _quietly(load: Callable[[], Robot]) -> Robot:

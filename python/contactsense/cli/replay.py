@@ -5,23 +5,23 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 import typer
 
 from .._extras import require
 from .._pictures import optional_picture
-from ..calibration import Calibration
 from ..errors import InputError
 from ..fleet.replay_fleet import Engine
 from ..offline import Replay, replay
 from ..offline.monitor_of import monitor_of
 from .exit_codes import DAMAGED, INTERRUPTED
 from .fleet import replay_in_parallel
-from .log_options import LogOptions, with_log_options
+from .log_options import LogOptions
+from .monitor_options import MonitorOptions
 from .progress import progress_bar
-from .sensor_options import ConventionOption, SensorOption, WantedOption, sensors_of
+from .shared_options import with_shared_options
 
 # A robot that is touched for more of the time than this is rather one whose model is wrong.
 _OFTEN = 0.5
@@ -29,7 +29,7 @@ _OFTEN = 0.5
 
 def register(parent: typer.Typer) -> None:
     """Adds `replay` to the command line."""
-    parent.command("replay")(with_log_options(command))
+    parent.command("replay")(with_shared_options(command))
 
 
 def command(
@@ -37,26 +37,7 @@ def command(
         list[Path], typer.Argument(metavar="LOG...", help="Files or folders of bags; one log each.")
     ],
     options: LogOptions,
-    calibration: Annotated[
-        Path | None, typer.Option(help="File of `contactsense calibrate`: noise, friction, masses, levels.")
-    ] = None,
-    threshold: Annotated[
-        float | None,
-        typer.Option(
-            help="Torque that is a contact, on every joint in Nm (default: 0.5, or the calibration's)."
-        ),
-    ] = None,
-    gain: Annotated[float, typer.Option(help="Observer gain in 1/s.")] = 50.0,
-    bias_time: Annotated[
-        float | None,
-        typer.Option(help="Time constant in s of the bias that is learnt without contact (default: none)."),
-    ] = None,
-    sensor: SensorOption = None,
-    sensor_convention: ConventionOption = "load",
-    wanted: WantedOption = None,
-    wrench_threshold: Annotated[
-        float, typer.Option(help="Wrench at a sensor that is a contact, in N and Nm.")
-    ] = 2.0,
+    monitor: MonitorOptions,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -96,17 +77,7 @@ def command(
     if png is not None and len(logs) > 1 and engine is None:
         raise InputError(f"png: is a picture of one log, and there are {len(logs)}")
     png = optional_picture("png", png)
-    sensors = sensors_of(sensor, sensor_convention)
-    arguments: dict[str, Any] = {
-        "sensors": list(sensors),
-        "wanted_contacts": wanted or [],
-        "wrench_threshold": wrench_threshold,
-        "observer_gain": gain,
-        "bias_time_constant": bias_time,
-        "calibration": None if calibration is None else Calibration.load(calibration),
-    }
-    if threshold is not None:
-        arguments["torque_threshold"] = threshold
+    sensors, arguments = monitor.sensors(), monitor.arguments()
     if engine is not None:
         if out is None:
             raise InputError("out: --engine needs the folder of the data set")
@@ -133,9 +104,8 @@ def command(
     code = 0
     for path in logs:
         log = options.load_log(path, loaded, sensors)
-        monitor = monitor_of(log, loaded, **arguments)
         with progress_bar(path.name, as_json) as show:
-            result = replay(log, monitor, on_progress=show)
+            result = replay(log, monitor_of(log, loaded, **arguments), on_progress=show)
         print_contacts(path, result, as_json)
         if png is not None:
             from .contact_picture import save_contact_picture

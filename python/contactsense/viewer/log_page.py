@@ -1,0 +1,170 @@
+"""The page of a log: the robot, a time line, the torques and the contacts."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from collections.abc import Sequence
+from contextlib import redirect_stdout
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from .._extras import require
+from ..errors import InputError
+from ..offline import Replay, ReplayedContact
+from ..offline.whole import whole_file
+from .moment import ReplayMoments
+from .stage import Stage
+
+LOOPBACK = "127.0.0.1"
+FRAMES = 30.0  # [1/s]
+# Points of a plot, which are more than its pixels.
+_POINTS = 1500
+_COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#8A8200")
+
+
+class LogPage:
+    """A page in the browser, on this machine only, until it is closed."""
+
+    def __init__(self, title: str, result: Replay, moments: ReplayMoments, port: int = 8080) -> None:
+        require("view", "viser")
+        import viser
+
+        if not len(moments):
+            raise InputError("log: has no rows to show")
+        self._moments = moments
+        self._time = result.ticks["time"] - result.ticks["time"][0]
+        # What it says of itself goes to stdout, which is for results.
+        with redirect_stdout(sys.stderr):
+            self._server = viser.ViserServer(
+                host=LOOPBACK, port=port, label=f"contactsense: {title}", verbose=False
+            )
+        self._stage = Stage(self._server.scene, result.robot, result.log.q[0])
+        _place_camera(self._server.initial_camera, self._stage.reach)
+        self._lock = threading.Lock()
+        self._playing = threading.Event()
+        self._closed = threading.Event()
+        self._build(title, result)
+        self._draw(0.0)
+        threading.Thread(target=self._play, daemon=True).start()
+
+    @property
+    def address(self) -> str:
+        """Where the page is."""
+        return f"http://{LOOPBACK}:{self._server.get_port()}"
+
+    def show(self, seconds: float) -> None:
+        """Shows the row at a time from the log's start."""
+        self._slider.value = min(max(seconds, 0.0), float(self._time[-1]))
+
+    def to_html(self, path: str | os.PathLike[str], start: float = 0.0, end: float = np.inf) -> None:
+        """Writes a part of the log, in seconds from its start, as a page that needs no program or network.
+
+        Raises:
+            InputError: the log has no such part.
+        """
+        times = np.arange(max(start, 0.0), min(end, float(self._time[-1])), 1.0 / FRAMES)
+        if not len(times):
+            raise InputError(
+                f"start: must be before end, and before the end of the log, {self._time[-1]:g} s"
+            )
+        serializer = self._server.get_scene_serializer()
+        for seconds in times:
+            self._draw(float(seconds))
+            serializer.insert_sleep(1.0 / FRAMES)
+        with whole_file(path) as file:
+            file.write_text(serializer.as_html(), encoding="utf-8")
+
+    def _draw(self, seconds: float) -> None:
+        row = min(int(np.searchsorted(self._time, seconds)), len(self._time) - 1)
+        with self._lock, self._server.atomic():
+            self._stage.show(self._moments.at(row))
+
+    def close(self) -> None:
+        """Ends the page."""
+        self._closed.set()
+        with redirect_stdout(sys.stderr):
+            self._server.stop()
+
+    def _build(self, title: str, result: Replay) -> None:
+        gui: Any = self._server.gui
+        gui.configure_theme(
+            control_layout="fixed", control_width="large", show_logo=False, show_share_button=False
+        )
+        gui.add_markdown(f"**{title}**: {len(result.contacts)} contacts in {self._time[-1]:.1f} s")
+        length = float(self._time[-1]) or 1.0
+        self._slider = gui.add_slider("time [s]", 0.0, length, min(length, 0.001), 0.0)
+        self._slider.on_update(lambda _: self._draw(float(self._slider.value)))
+        button = gui.add_button("Play / pause")
+        button.on_click(lambda _: self._playing.clear() if self._playing.is_set() else self._playing.set())
+        _add_torques(gui, self._time, result)
+        gui.add_html(_table(result.contacts, float(result.ticks["time"][0])))
+
+    def _play(self) -> None:
+        """Moves the time line on, as fast as the log went."""
+        while not self._closed.wait(1.0 / FRAMES):
+            if self._playing.is_set():
+                start, begun = float(self._slider.value), time.monotonic()
+                while self._playing.is_set() and not self._closed.wait(1.0 / FRAMES):
+                    now = start + time.monotonic() - begun
+                    self._slider.value = min(now, float(self._time[-1]))
+                    if now >= self._time[-1]:
+                        self._playing.clear()
+
+
+def _add_torques(gui: Any, seconds: Any, result: Replay) -> None:
+    from viser import uplot
+
+    every = max(1, len(seconds) // _POINTS)
+    torques = result.ticks["external_torque"][::every]
+    names = result.robot.joint_names
+    # Bars from bottom to top where there is contact.
+    bounds = 1.1 * min(0.0, float(torques.min())), 1.1 * max(1.0, float(torques.max()))
+    contact = np.where(result.ticks["collision"][::every], bounds[1], bounds[0])
+    bars = uplot.Series(label="contact", fill="rgba(213,94,0,0.2)", width=0, fillTo=bounds[0])
+    series = [uplot.Series(label="t [s]"), bars]
+    for k in range(torques.shape[1]):
+        # Six variables of a floating base have one joint.
+        label = names[k] if len(names) == torques.shape[1] else str(k)
+        series.append(uplot.Series(label=label, stroke=_COLOURS[k % len(_COLOURS)], width=1))
+    gui.add_uplot(
+        (seconds[::every].copy(), contact, *torques.T.copy()),
+        tuple(series),
+        title="External torque [Nm]; contacts shaded",
+        scales={"x": uplot.Scale(time=False), "y": uplot.Scale(range=bounds)},
+        legend=uplot.Legend(show=torques.shape[1] <= len(_COLOURS)),
+        aspect=1.5,
+    )
+
+
+def _place_camera(camera: Any, reach: float) -> None:
+    """So that the whole robot is seen, from the front and above."""
+    camera.look_at = (0.0, 0.0, 0.4 * reach)
+    camera.position = (1.5 * reach, 1.1 * reach, 1.2 * reach)
+
+
+def _table(contacts: Sequence[ReplayedContact], start: float) -> str:
+    """The contacts as a table of HTML."""
+    rows = [("from, to [s]", "link", "prob. [%]", "90 % [cm]", "located", "peak [N]")]
+    rows += [
+        (
+            f"{contact.start - start:.2f}, {contact.end - start:.2f}",
+            contact.link,
+            _number(100.0 * contact.link_probability, 0),
+            _number(100.0 * contact.region_radius, 1),
+            "yes" if contact.located else "no",
+            _number(contact.peak_force, 1),
+        )
+        for contact in contacts
+    ]
+    cells = ("".join(f'<td style="padding:1px 8px">{escape(cell)}</td>' for cell in row) for row in rows)
+    body = "".join(f"<tr>{row}</tr>" for row in cells)
+    return f'<table style="font-size:12px">{body}</table>'
+
+
+def _number(value: float, digits: int) -> str:
+    return f"{value:.{digits}f}" if np.isfinite(value) else "-"

@@ -1,0 +1,166 @@
+"""The page of a log: what it draws, that it is seen in a browser, and what it writes."""
+
+from __future__ import annotations
+
+import shutil
+import socket
+import subprocess
+import sys
+import time
+import urllib.request
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from log_files import DT, arm, named_columns, pushed, write_csv
+
+import contactsense as cs
+from contactsense.cli.app import run
+
+pytest.importorskip("viser")
+from contactsense.viewer.log_page import LogPage
+from contactsense.viewer.moment import ReplayMoments
+
+# Seconds from the start of the log: before the push, and in the middle of it.
+BEFORE, PUSHED = 0.4, 1.1
+# viser and what it builds on keep sockets of pages that have ended open for a while.
+pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning")
+
+
+@pytest.fixture(scope="module")
+def result() -> cs.Replay:
+    return cs.replay(pushed(), cs.ContactMonitor(arm(), dt=DT, torque_threshold=0.6))
+
+
+@pytest.fixture(scope="module")
+def moments(result: cs.Replay) -> ReplayMoments:
+    return ReplayMoments(result, cs.ContactMap(arm(), samples=1000))
+
+
+def free_port() -> int:
+    with socket.socket() as it:
+        it.bind(("127.0.0.1", 0))
+        return int(it.getsockname()[1])
+
+
+@pytest.fixture
+def page(result: cs.Replay, moments: ReplayMoments) -> Iterator[LogPage]:
+    page = LogPage("pushed", result, moments, free_port())
+    yield page
+    page.close()
+
+
+def test_an_instant_has_what_the_monitor_said(result: cs.Replay, moments: ReplayMoments) -> None:
+    assert len(moments) == 2000
+    assert moments.at(round(BEFORE / DT)).touches == ()
+    row = round(PUSHED / DT)
+    moment = moments.at(row)
+    (touch,) = moment.touches
+    (k,) = np.flatnonzero(result.contact_ticks["row"] == row)
+    np.testing.assert_array_equal(touch.point, result.contact_ticks["point"][k])
+    np.testing.assert_array_equal(touch.force, result.contact_ticks["force"][k])
+    np.testing.assert_array_equal(moment.q, pushed().q[row])
+    assert moment.likelihood.max() == 1.0
+    likeliest = moment.places[np.argmax(moment.likelihood)]
+    assert np.linalg.norm(likeliest - touch.point) < 0.1
+
+
+def test_the_scene_shows_robot_force_and_posterior(page: LogPage, moments: ReplayMoments) -> None:
+    scene = page._server.scene
+
+    def wait_for(name: str, there: bool) -> None:
+        until = time.monotonic() + 20.0
+        while (scene.get_handle_by_name(name) is not None) != there:
+            assert time.monotonic() < until, name
+            time.sleep(0.01)
+
+    page.show(PUSHED)
+    wait_for("/contact 0/force", True)
+    moment = moments.at(round(PUSHED / DT))
+    (touch,) = moment.touches
+    arrow = scene.get_handle_by_name("/contact 0/force").points[0]
+    np.testing.assert_allclose(arrow[1], touch.point, atol=1e-6)
+    along = (arrow[1] - arrow[0]) / np.linalg.norm(arrow[1] - arrow[0])
+    np.testing.assert_allclose(along, touch.force / np.linalg.norm(touch.force), atol=1e-5)
+    for link in arm().link_names:
+        handle = scene.get_handle_by_name(f"/robot/{link}")
+        np.testing.assert_allclose(handle.position, arm().link_pose(moment.q, link)[:3, 3], atol=1e-9)
+    assert len(scene.get_handle_by_name("/posterior").points) > 5
+    page.show(BEFORE)
+    wait_for("/contact 0/force", False)
+    wait_for("/posterior", False)
+
+
+def test_the_page_is_served_on_loopback_alone(page: LogPage) -> None:
+    assert page.address.startswith("http://127.0.0.1:")
+    with urllib.request.urlopen(page.address, timeout=20) as answer:
+        assert b"<html" in answer.read(2000)
+    port = int(page.address.rsplit(":", 1)[1])
+    # A server for everyone would answer at this address of the same machine.
+    with pytest.raises(ConnectionRefusedError):
+        socket.create_connection(("127.0.0.2", port), timeout=5.0)
+
+
+def test_a_page_that_is_written_stands_alone(page: LogPage, tmp_path: Path) -> None:
+    file = tmp_path / "pushed.html"
+    page.to_html(file, 1.0, 1.3)
+    text = file.read_text(encoding="utf-8")
+    assert "<html" in text
+    assert len(text) > 100_000
+    with pytest.raises(cs.InputError, match="start: must be before end"):
+        page.to_html(file, 5.0)
+    assert file.read_text(encoding="utf-8") == text
+
+
+def chromium() -> str | None:
+    return next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+
+
+def screenshot(address: str, file: Path) -> np.ndarray:
+    matplotlib = pytest.importorskip("matplotlib.image")
+    command = [str(chromium()), "--headless", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader"]
+    command += ["--enable-unsafe-swiftshader", "--window-size=1200,800", "--virtual-time-budget=15000"]
+    subprocess.run(
+        [*command, f"--user-data-dir={file.with_suffix('')}", f"--screenshot={file}", address],
+        check=True, timeout=200, capture_output=True,
+    )  # fmt: skip
+    picture: np.ndarray = matplotlib.imread(file)[:, :, :3]
+    return picture
+
+
+def count(picture: np.ndarray, colour: tuple[int, int, int], hue: float = 0.08) -> int:
+    """Pixels of a colour, whatever the light on it."""
+    wanted = np.array(colour) / np.linalg.norm(colour)
+    sizes = np.maximum(np.linalg.norm(picture, axis=2), 1e-6)
+    return int(np.count_nonzero(np.linalg.norm(picture / sizes[..., None] - wanted, axis=2) < hue))
+
+
+@pytest.mark.skipif(chromium() is None, reason="there is no Chromium")
+def test_a_browser_shows_robot_and_contact(page: LogPage, tmp_path: Path) -> None:
+    page.show(BEFORE)
+    before = screenshot(page.address, tmp_path / "before.png")
+    page.show(PUSHED)
+    pushed_now = screenshot(page.address, tmp_path / "pushed.png")
+    scene = slice(0, 860)  # left of the controls
+    # The link that is touched is blue, the place and the force are orange.
+    blue, orange = (86, 180, 233), (213, 94, 0)
+    assert count(pushed_now[:, scene], blue) > count(before[:, scene], blue) + 300
+    assert count(pushed_now[:, scene], orange) > count(before[:, scene], orange) + 100
+    assert np.std(before[150:, scene]) > 0.02  # the robot, on white
+
+
+def test_the_command_writes_a_page(tmp_path: Path) -> None:
+    log = pushed()
+    words = {"position": "pos", "velocity": "vel", "torque": "effort"}
+    columns = {"time": log.time, **named_columns(log, [str(k) for k in range(1, 8)], words)}
+    file = write_csv(tmp_path / "pushed.csv", columns)
+    page = tmp_path / "pushed.html"
+    arguments = ["view", str(file), "--robot", "iiwa14", "--threshold", "0.6", "--port", str(free_port())]
+    done = subprocess.run(
+        [sys.executable, "-m", "contactsense.cli", *arguments, "--html", str(page), "--end", "0.3"],
+        check=True, timeout=200, capture_output=True, text=True,
+    )  # fmt: skip
+    assert done.stdout == ""
+    assert page.stat().st_size > 100_000
+    assert run([*arguments, "--html", str(tmp_path / "nosuch" / "a.html")]) == 2
