@@ -83,7 +83,7 @@ def test_a_wrong_model_is_not_taken_for_contacts_without_a_word(
 ) -> None:
     constants = ["--torque-constants", "0.5"]
     assert run(replay(file, *constants)) == 0
-    assert "errors of the model" in capsys.readouterr().err
+    assert "its model has errors" in capsys.readouterr().err
 
 
 def test_ctrl_c_keeps_what_is_done(
@@ -107,6 +107,23 @@ def test_ctrl_c_keeps_what_is_done(
     assert "1 contacts in 1.5 s, until it was interrupted" in capsys.readouterr().out
 
 
+def test_thresholds_by_joint_and_an_external_torque(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log = pushed()
+    torque = cs.replay(log, cs.ContactMonitor(arm(), dt=0.001)).ticks["external_torque"]
+    vendor = {f"tau_ext{joint}": -torque[:, joint] for joint in range(7)}
+    file = write_csv(tmp_path / "a.csv", {**columns(log), **vendor})
+    levels = [9.0, 9.0, 9.0, 0.6, 0.5, 0.6, 0.5]
+    external = ["--external", "--torque-constants=-1", "--threshold", ",".join(map(str, levels)), "--json"]
+    assert run(["replay", str(file), "--robot", "iiwa14", *external]) == 0
+    (line,) = capsys.readouterr().out.splitlines()
+    read = cs.read_log(file, arm(), external=True, torque_constants=-1.0)
+    monitor = cs.ContactMonitor(arm(), dt=float(np.median(np.diff(read.time))), torque_threshold=levels)
+    (contact,) = cs.replay(read, monitor).contacts
+    assert json.loads(line) == {"log": str(file), **contact.to_dict()}
+
+
 @pytest.mark.parametrize(
     ("more", "message"),
     [
@@ -114,6 +131,9 @@ def test_ctrl_c_keeps_what_is_done(
         (["--column", "nosuch=a"], "columns: there is no 'nosuch'"),
         (["--unit", "position=m"], "units: there is no 'position'"),
         (["--torque-constants", "a"], "torque-constants: must be a number"),
+        (["--threshold", "1,2"], "torque_threshold"),
+        (["--threshold", "1,a"], "threshold: must be a number"),
+        (["--external"], "nothing holds external torques"),
         (["--calibration", "nosuch.yaml"], "path: cannot read"),
     ],
 )

@@ -59,6 +59,14 @@ ConstantsOption = Annotated[
         "--torque-constants", help="Torque for each recorded unit, one or one a joint: 0.1,0.1,0.08."
     ),
 ]
+ExternalOption = Annotated[
+    bool,
+    typer.Option(
+        "--external",
+        help="Take the vendor's external torque in place of the motors' torques; --torque-constants=-1 "
+        "turns its sign.",
+    ),
+]
 RateOption = Annotated[
     float | None,
     typer.Option("--rate", help="Interpolate to so many rows a second (default: rows as they are)."),
@@ -77,6 +85,7 @@ class LogOptions:
     topic: TopicOption = None
     unit: UnitOption = None
     torque_constants: ConstantsOption = None
+    external: ExternalOption = False
     rate: RateOption = None
 
     def load_robot(self) -> Robot:
@@ -109,17 +118,14 @@ class LogOptions:
 
     def load_log(self, path: Path, robot: Robot) -> Log:
         """The log of a file; what was chosen is printed on stderr."""
-        numbers: list[float] | float | None = None
-        if self.torque_constants is not None:
-            numbers = [_number("torque-constants", it) for it in self.torque_constants.split(",")]
-            numbers = numbers[0] if len(numbers) == 1 else numbers
         log = read_log(
             path,
             robot,
             columns=pairs("column", self.column),
             topics=self.topic or None,
             units=pairs("unit", self.unit),
-            torque_constants=numbers,
+            torque_constants=numbers("torque-constants", self.torque_constants),
+            external=self.external,
             rate=self.rate,
         )
         print(log.reading, file=sys.stderr)
@@ -170,6 +176,18 @@ def pairs(option: str, given: Sequence[str] | None, default: str | None = None) 
             raise InputError(f"{option}: must be NAME=VALUE, not '{text}'")
         found[name] = value if equals else str(default)
     return found
+
+
+def numbers(option: str, text: str | None) -> list[float] | float | None:
+    """One number, or several with commas between them.
+
+    Raises:
+        InputError: one of them is no number.
+    """
+    if text is None:
+        return None
+    several = [_number(option, it) for it in text.split(",")]
+    return several[0] if len(several) == 1 else several
 
 
 def _number(option: str, text: str) -> float:

@@ -20,7 +20,7 @@ from ..log import Log
 from ..offline import Replay, replay
 from ..robot import Robot
 from .exit_codes import DAMAGED, INTERRUPTED
-from .log_options import LogOptions, with_log_options
+from .log_options import LogOptions, numbers, with_log_options
 
 # A robot that is touched for more of the time than this is rather one whose model is wrong.
 _OFTEN = 0.5
@@ -40,9 +40,10 @@ def command(
         Path | None, typer.Option(help="File of `contactsense calibrate`: noise, friction, masses, levels.")
     ] = None,
     threshold: Annotated[
-        float | None,
+        str | None,
         typer.Option(
-            help="Torque that is a contact, on every joint in Nm (default: 0.5, or the calibration's)."
+            help="Torque that is a contact in Nm, one or one a joint: 2,2,1 "
+            "(default: 0.5, or the calibration's)."
         ),
     ] = None,
     gain: Annotated[float, typer.Option(help="Observer gain in 1/s.")] = 50.0,
@@ -67,7 +68,7 @@ def command(
     code = 0
     for path in logs:
         log = options.load_log(path, loaded)
-        monitor = make_monitor(loaded, log, known, threshold, gain, bias_time)
+        monitor = make_monitor(loaded, log, known, numbers("threshold", threshold), gain, bias_time)
         with progress_bar(path.name, as_json) as show:
             result = replay(log, monitor, on_progress=show)
         print_contacts(path, result, as_json)
@@ -85,7 +86,7 @@ def make_monitor(
     robot: Robot,
     log: Log,
     calibration: Calibration | None,
-    threshold: float | None,
+    threshold: list[float] | float | None,
     gain: float,
     bias_time: float | None,
 ) -> ContactMonitor:
@@ -129,9 +130,9 @@ def print_contacts(path: Path, result: Replay, as_json: bool) -> None:
     share = float(np.mean(result.ticks["collision"])) if len(result.ticks["time"]) else 0.0
     if share > _OFTEN:
         print(
-            f"contactsense: {path}: in contact for {share:.0%} of the time, which points to errors of the "
-            "model: calibrate with motion without contact (contactsense calibrate), or ask what is wrong "
-            "(contactsense diagnose)",
+            f"contactsense: {path}: in contact for {share:.0%} of the time. If the robot was not, its model "
+            "has errors: calibrate with motion without contact (contactsense calibrate), or ask what is "
+            "wrong (contactsense diagnose)",
             file=sys.stderr,
         )
 

@@ -13,7 +13,7 @@ from ..errors import InputError
 from .choice import Group, choose
 from .joint_columns import JointColumns
 from .log import Log
-from .quantities import CURRENT, EXTERNAL, POSITION, TORQUE, VELOCITY
+from .quantities import CURRENT, EXTERNAL, POSITION, QUANTITIES, TORQUE, VELOCITY
 from .reading import Reading
 from .recording import Recording, Table
 from .resample import at_rate, differences
@@ -24,6 +24,8 @@ Rows = NDArray[np.float64]
 
 # No measurement is as large as this, in whatever unit: what is there is a broken file.
 _LARGEST = 1e12
+# What is looked for where the external torque alone is wanted.
+_OF_EXTERNAL = (POSITION, VELOCITY, EXTERNAL)
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,7 @@ class Wishes:
     columns: Mapping[str, str | Sequence[str]]
     units: Mapping[str, str]
     torque_constants: NDArray[np.float64] | None
+    external: bool
     rate: float | None
 
     @property
@@ -46,7 +49,7 @@ def robot_log(path: str, recording: Recording, robot: _core.Robot, wishes: Wishe
     """The log of what a recording has of a robot; see `read_log`."""
     joints = JointColumns(robot)
     named = {name: value for name, value in wishes.columns.items() if name != "time"}
-    groups = choose(recording, joints.names, named)
+    groups = choose(recording, joints.names, named, _OF_EXTERNAL if wishes.external else QUANTITIES)
     if TORQUE in groups:
         groups.pop(CURRENT, None)
     for group in groups.values():
@@ -158,7 +161,8 @@ def _to_units(
                 f"torque_constants: {groups[CURRENT].title} are no torques; give the torque for each ampere"
             )
         values[TORQUE] = values.pop(CURRENT)
-    if wishes.torque_constants is not None and TORQUE in values:
-        values[TORQUE] = values[TORQUE] * wishes.torque_constants
-        chosen.append("torque: what was recorded, times torque_constants")
+    wanted = EXTERNAL if wishes.external else TORQUE
+    if wishes.torque_constants is not None and wanted in values:
+        values[wanted] = values[wanted] * wishes.torque_constants
+        chosen.append(f"{wanted}: what was recorded, times torque_constants")
     return chosen
