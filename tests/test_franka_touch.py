@@ -6,10 +6,11 @@ import gzip
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from robots import BY_NAME, SHARED
+from robots import BY_NAME, EXAMPLE_SHARE, SHARED
 
 import contactsense as cs
 from contactsense._extras import MissingExtraError
@@ -25,7 +26,7 @@ from contactsense_studies.franka_touch.logs import COLUMNS, TouchLog, log_files,
 from contactsense_studies.franka_touch.replay import replay
 from contactsense_studies.franka_touch.settings import MEASURED, VENDOR, Settings
 from contactsense_studies.franka_touch.summary import summarise
-from contactsense_studies.franka_touch.touches import EARLY, judge, link_number
+from contactsense_studies.franka_touch.touches import EARLY, LogResult, judge, link_number
 from contactsense_studies.franka_touch.tuning import choose_settings
 
 REAL = SHARED / "real" / "franka_touch"
@@ -253,6 +254,46 @@ def test_stored_settings_are_those_chosen(real: study.Study) -> None:
     robot = study.panda()
     assert choose_settings(robot, real.logs, "measured") == MEASURED
     assert choose_settings(robot, real.logs, "vendor") == VENDOR
+
+
+def replayed(name: str, capsys: pytest.CaptureFixture[str], *more: str) -> list[dict[str, Any]]:
+    """The contacts that `contactsense replay` prints of a real log."""
+    arm = ["--robot", str(BY_NAME["panda"].path), "--package-dir", str(EXAMPLE_SHARE)]
+    log = str(REAL / f"{name}.csv.gz")
+    capsys.readouterr()
+    assert run_cli(["replay", log, *arm, "--lock", "panda_finger*", *more, "--json"]) == 0
+    return [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+
+
+def onsets(log: LogResult) -> list[float]:
+    """All that the study counts, detected contacts and false alarms."""
+    felt = [touch.start + touch.delay for touch in log.touches if touch.delay is not None]
+    return sorted([*felt, *log.false_onsets])
+
+
+@pytest.mark.shared
+@pytest.mark.parametrize("name", ["a4", "a5", "c2", "d5", "f2"])
+def test_the_command_line_finds_the_contacts_of_the_study(
+    real: study.Study, name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    files = save_calibrations(real.logs, real.calibrations, tmp_path)
+    (calibration,) = [str(file) for file in files if file.stem == name]
+    assert real.calibrated is not None
+    (expected,) = [log for log in real.calibrated.logs if log.name == name]
+    external = ["--external", "--torque-constants=-1"]
+    contacts = replayed(name, capsys, *external, "--calibration", calibration)
+    assert [contact["start"] for contact in contacts] == pytest.approx(onsets(expected), abs=1e-9)
+    robot = study.panda()
+    links = [link_number(robot, contact["link"]) for contact in contacts]
+    assert links == [touch.link for touch in expected.touches]
+
+    # With thresholds the study names links in a way of its own.
+    for settings, evaluation, more in ((MEASURED, real.measured, []), (VENDOR, real.vendor, external)):
+        (expected,) = [log for log in evaluation.logs if log.name == name]
+        levels = ",".join(map(str, settings.detection_threshold))
+        options = ["--gain", str(settings.observer_gain), "--bias-time", str(settings.bias_time_constant)]
+        contacts = replayed(name, capsys, *more, "--threshold", levels, *options)
+        assert [contact["start"] for contact in contacts] == pytest.approx(onsets(expected), abs=1e-9)
 
 
 @pytest.mark.shared
