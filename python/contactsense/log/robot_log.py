@@ -74,11 +74,14 @@ def robot_log(path: str, recording: Recording, robot: _core.Robot, wishes: Wishe
     unknown = list(dict.fromkeys(name for group in groups.values() for name in group.others))
     others = [f"columns of joints that the robot does not have: {', '.join(unknown)}"] if unknown else []
     left_out = (*recording.left_out, *others)
-    torques = {name: joints.velocity(values[name]) for name in (TORQUE, EXTERNAL) if name in values}
+    # Each is given up for its copy: long logs take much memory.
+    configuration = joints.configuration(values.pop(POSITION))
+    velocity = joints.velocity(values.pop(VELOCITY))
+    torques = {name: joints.velocity(values.pop(name)) for name in (TORQUE, EXTERNAL) if name in values}
     return Log(
         time,
-        joints.configuration(values[POSITION]),
-        joints.velocity(values[VELOCITY]),
+        configuration,
+        velocity,
         torques.get(TORQUE),
         external_torque=torques.get(EXTERNAL),
         reading=Reading(path, tuple(chosen), tuple(mended), left_out, recording.damage),
