@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from log_files import arm, named_columns, pushed, write_csv
-from robots import BY_NAME, EXAMPLE_SHARE, SHARED
+from robots import BY_NAME, EXAMPLE_SHARE, SHARED, example
 
 import contactsense as cs
 from contactsense.cli.app import run
@@ -192,6 +192,29 @@ def test_diagnose_recognises_torques_of_the_opposite_sign(
     assert png.stat().st_size > 20_000
     assert run([*arguments, "--torque-constants", "-1"]) == 0
     assert capsys.readouterr().out.startswith("1. major, sign: ")
+
+
+def test_a_short_log_is_not_calibrated_without_a_word(
+    moving: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    short = tmp_path / "short.csv"
+    short.write_text("\n".join(moving.read_text().splitlines()[:700]) + "\n")
+    assert run(["calibrate", str(short), "--robot", "iiwa14", "--out", str(tmp_path / "arm.yaml")]) == 0
+    assert "7.0 s are short; record at least 10 s" in capsys.readouterr().err
+
+
+def test_warnings_of_meshes_are_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    urdf = example("ur_description/urdf/ur3_robot.urdf")
+    robot = cs.Robot.from_urdf(urdf, package_dirs=EXAMPLE_SHARE)
+    of_meshes = [text for text in robot.warnings if text.startswith("link '")]
+    assert len(of_meshes) == len(robot.warnings) > 10
+    six = {name: np.zeros(20) for name in robot.actuated_joint_names}
+    words = {f"{word}_{name}": rows for word in ("pos", "vel", "effort") for name, rows in six.items()}
+    file = write_csv(tmp_path / "a.csv", {"time": np.arange(20.0) / 100.0, **words})
+    assert run(["replay", str(file), "--robot", str(urdf), "--package-dir", str(EXAMPLE_SHARE)]) == 0
+    first, *others = capsys.readouterr().err.splitlines()
+    assert first == f"ur3: meshes of 5 links are open or were repaired; Robot.warnings lists {len(of_meshes)}"
+    assert not any(text in "".join(others) for text in of_meshes)
 
 
 @pytest.mark.shared

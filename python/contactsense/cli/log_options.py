@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fnmatch
 import logging
+import re
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
@@ -19,6 +20,8 @@ from ..log import Log, read_log
 from ..robot import DESCRIPTIONS, Robot
 
 _Geometry = Literal["collision", "visual", "collision_or_visual"]
+# A warning of one link is of its mesh.
+_OF_MESH = re.compile(r"link '(.*?)': ")
 _GEOMETRIES: tuple[_Geometry, ...] = ("collision", "visual", "collision_or_visual")
 
 RobotOption = Annotated[
@@ -89,7 +92,13 @@ class LogOptions:
     rate: RateOption = None
 
     def load_robot(self) -> Robot:
-        """The robot."""
+        """The robot; its warnings are printed on stderr."""
+        robot = self._robot()
+        for line in _summary(robot.warnings):
+            print(f"{robot.name}: {line}", file=sys.stderr)
+        return robot
+
+    def _robot(self) -> Robot:
         if self.robot in DESCRIPTIONS:
             return Robot.named(self.robot)
         shapes = next((known for known in _GEOMETRIES if known == self.geometry), None)
@@ -98,6 +107,7 @@ class LogOptions:
                 f"geometry: must be collision, visual or collision_or_visual, not {self.geometry!r}"
             )
         load = partial(
+            _quietly,
             Robot.from_urdf,
             self.robot,
             package_dirs=self.package_dir or [],
@@ -111,7 +121,7 @@ class LogOptions:
         for key, value in pairs("lock", self.lock, default="0").items():
             matching = [key]
             if "*" in key:
-                known = known or _quietly(load).joint_names
+                known = known or load().joint_names
                 matching = fnmatch.filter(known, key)
             joints.update(dict.fromkeys(matching, _number("lock", value)))
         return load(locked_joints=joints)
@@ -153,12 +163,22 @@ def with_log_options(command: Callable[..., None]) -> Callable[..., None]:
     return wrapper
 
 
-def _quietly(load: Callable[[], Robot]) -> Robot:
-    """Warnings of a robot are logged when it is loaded with its joints locked."""
+def _summary(warnings: Sequence[str]) -> list[str]:
+    """Warnings of a robot; those of meshes, of which there may be hundreds, as one line."""
+    links = {found[1] for text in warnings if (found := _OF_MESH.match(text))}
+    others = [text for text in warnings if not _OF_MESH.match(text)]
+    if not links:
+        return others
+    count = len(warnings) - len(others)
+    return [*others, f"meshes of {len(links)} links are open or were repaired; Robot.warnings lists {count}"]
+
+
+def _quietly(load: Callable[..., Robot], *arguments: Any, **options: Any) -> Robot:
+    """Without the warnings in the log: they are printed in short."""
     logger = logging.getLogger("contactsense")
     before, logger.disabled = logger.disabled, True
     try:
-        return load()
+        return load(*arguments, **options)
     finally:
         logger.disabled = before
 
