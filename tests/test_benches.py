@@ -24,7 +24,7 @@ LEAST = {
     "closest": 2,
     "rays": 2,
     "particle_filter": 5,
-    "log": 5,
+    "log": 4,
 }
 
 
