@@ -14,7 +14,7 @@ import pytest
 import contactsense as cs
 
 ROOT = Path(__file__).resolve().parents[1]
-PEERS = ("trimesh", "embreex", "igl", "fcpw", "idyntree", "scipy")
+PEERS = ("trimesh", "embreex", "igl", "fcpw", "idyntree", "scipy", "rosbags", "mcap")
 LEAST = {
     "observer": 2,
     "compensation": 2,
@@ -24,6 +24,7 @@ LEAST = {
     "closest": 2,
     "rays": 2,
     "particle_filter": 5,
+    "log": 4,
 }
 
 
@@ -55,6 +56,7 @@ def test_every_comparison_times_ours_beside_peers(report: dict, name: str) -> No
         "closest": "closest point",
         "rays": "all hits",
         "particle_filter": "particle filter",
+        "log": "log, 12,000 JointStates",
     }
     found = [c for c in report["comparisons"] if c["task"].startswith(starts[name])]
     assert len(found) >= LEAST[name]
@@ -96,5 +98,5 @@ def test_comparisons_without_the_peers_run(name: str) -> None:
 def test_unknown_comparison_is_refused() -> None:
     done = run("nothing")
     assert done.returncode == 2
-    names = "observer, compensation, monitor, noisy, contact_map, closest, rays, particle_filter"
+    names = "observer, compensation, monitor, noisy, contact_map, closest, rays, particle_filter, log"
     assert names in done.stderr

@@ -10,7 +10,7 @@ import humanoid_logs
 import numpy as np
 import pytest
 from log_files import arm, named_columns, pushed, write_csv
-from robots import BY_NAME, EXAMPLE_SHARE, SHARED
+from robots import BY_NAME, EXAMPLE_SHARE, SHARED, example
 
 import contactsense as cs
 from contactsense.cli.app import run
@@ -84,7 +84,7 @@ def test_a_wrong_model_is_not_taken_for_contacts_without_a_word(
 ) -> None:
     constants = ["--torque-constants", "0.5"]
     assert run(replay(file, *constants)) == 0
-    assert "errors of the model" in capsys.readouterr().err
+    assert "its model has errors" in capsys.readouterr().err
 
 
 def test_ctrl_c_keeps_what_is_done(
@@ -108,6 +108,23 @@ def test_ctrl_c_keeps_what_is_done(
     assert "1 contacts in 1.5 s, until it was interrupted" in capsys.readouterr().out
 
 
+def test_thresholds_by_joint_and_an_external_torque(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log = pushed()
+    torque = cs.replay(log, cs.ContactMonitor(arm(), dt=0.001)).ticks["external_torque"]
+    vendor = {f"tau_ext{joint}": -torque[:, joint] for joint in range(7)}
+    file = write_csv(tmp_path / "a.csv", {**columns(log), **vendor})
+    levels = [9.0, 9.0, 9.0, 0.6, 0.5, 0.6, 0.5]
+    external = ["--external", "--torque-constants=-1", "--threshold", ",".join(map(str, levels)), "--json"]
+    assert run(["replay", str(file), "--robot", "iiwa14", *external]) == 0
+    (line,) = capsys.readouterr().out.splitlines()
+    read = cs.read_log(file, arm(), external=True, torque_constants=-1.0)
+    monitor = cs.ContactMonitor(arm(), dt=float(np.median(np.diff(read.time))), torque_threshold=levels)
+    (contact,) = cs.replay(read, monitor).contacts
+    assert json.loads(line) == {"log": str(file), **contact.to_dict()}
+
+
 @pytest.mark.parametrize(
     ("more", "message"),
     [
@@ -115,6 +132,9 @@ def test_ctrl_c_keeps_what_is_done(
         (["--column", "nosuch=a"], "columns: there is no 'nosuch'"),
         (["--unit", "position=m"], "units: there is no 'position'"),
         (["--torque-constants", "a"], "torque-constants: must be a number"),
+        (["--threshold", "1,2"], "torque_threshold"),
+        (["--threshold", "1,a"], "threshold: must be a number"),
+        (["--external"], "nothing holds external torques"),
         (["--calibration", "nosuch.yaml"], "path: cannot read"),
     ],
 )
@@ -173,6 +193,29 @@ def test_diagnose_recognises_torques_of_the_opposite_sign(
     assert png.stat().st_size > 20_000
     assert run([*arguments, "--torque-constants", "-1"]) == 0
     assert capsys.readouterr().out.startswith("1. major, sign: ")
+
+
+def test_a_short_log_is_not_calibrated_without_a_word(
+    moving: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    short = tmp_path / "short.csv"
+    short.write_text("\n".join(moving.read_text().splitlines()[:700]) + "\n")
+    assert run(["calibrate", str(short), "--robot", "iiwa14", "--out", str(tmp_path / "arm.yaml")]) == 0
+    assert "7.0 s are short; record at least 10 s" in capsys.readouterr().err
+
+
+def test_warnings_of_meshes_are_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    urdf = example("ur_description/urdf/ur3_robot.urdf")
+    robot = cs.Robot.from_urdf(urdf, package_dirs=EXAMPLE_SHARE)
+    of_meshes = [text for text in robot.warnings if text.startswith("link '")]
+    assert len(of_meshes) == len(robot.warnings) > 10
+    six = {name: np.zeros(20) for name in robot.actuated_joint_names}
+    words = {f"{word}_{name}": rows for word in ("pos", "vel", "effort") for name, rows in six.items()}
+    file = write_csv(tmp_path / "a.csv", {"time": np.arange(20.0) / 100.0, **words})
+    assert run(["replay", str(file), "--robot", str(urdf), "--package-dir", str(EXAMPLE_SHARE)]) == 0
+    first, *others = capsys.readouterr().err.splitlines()
+    assert first == f"ur3: meshes of 5 links are open or were repaired; Robot.warnings lists {len(of_meshes)}"
+    assert not any(text in "".join(others) for text in of_meshes)
 
 
 @pytest.mark.shared

@@ -9,7 +9,7 @@ import pytest
 
 import contactsense as cs
 from contactsense_studies.franka_touch.convert import FILE, LABELLED, convert, main
-from contactsense_studies.franka_touch.logs import read_logs
+from contactsense_studies.franka_touch.logs import log_files, read_log
 
 # As the public files are laid out: torques first, commanded values between, an index before all.
 SIGNALS = ("tau_J", "tau_J_d", "tau_ext", "q", "q_d", "dq", "dq_d", "e", "de", "etau_J")
@@ -42,14 +42,14 @@ def test_converted_logs_are_what_the_study_reads(tmp_path: Path) -> None:
     table = checkout(tmp_path, "a4", "g11")
     written = convert(tmp_path, tmp_path / "logs", ("a4", "g11"))
     assert [path.name for path in written] == ["a4.csv.gz", "g11.csv.gz"]
-    first, second = read_logs(tmp_path / "logs")
+    first, second = (read_log(file, cs.Robot.named("iiwa14")) for file in log_files(tmp_path / "logs"))
     assert (first.link, second.link) == (7, 1)
     assert first.touches == [(4, 7)]
     np.testing.assert_allclose(first.time, table[:, 1], rtol=1e-6)
-    np.testing.assert_allclose(first.q, columns(table, "q"), rtol=1e-6)
-    np.testing.assert_allclose(first.dq, columns(table, "dq"), rtol=1e-6)
-    np.testing.assert_allclose(first.tau, columns(table, "tau_J"), rtol=1e-6)
-    np.testing.assert_allclose(first.vendor, -columns(table, "tau_ext"), rtol=1e-6)
+    np.testing.assert_allclose(first.measured.q, columns(table, "q"), rtol=1e-6)
+    np.testing.assert_allclose(first.measured.v, columns(table, "dq"), rtol=1e-6)
+    np.testing.assert_allclose(first.measured.tau, columns(table, "tau_J"), rtol=1e-6)
+    np.testing.assert_allclose(first.vendor.external_torque, -columns(table, "tau_ext"), rtol=1e-6)
 
 
 def test_the_same_log_makes_the_same_file(tmp_path: Path) -> None:

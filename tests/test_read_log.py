@@ -95,6 +95,22 @@ def test_currents_need_a_constant(tmp_path: Path, columns: dict[str, np.ndarray]
         cs.read_log(file, arm(), torque_constants={"nosuch": 1.0})
 
 
+def test_an_external_torque_takes_the_place_of_the_motors(
+    tmp_path: Path, columns: dict[str, np.ndarray]
+) -> None:
+    estimates = {f"tau_ext_{number}": np.full(200, 0.1 * int(number)) for number in NUMBERS}
+    # Two torques that fit as well do not matter where none is wanted.
+    others = {name.replace("effort", "torque"): rows for name, rows in columns.items() if "effort" in name}
+    file = write_csv(tmp_path / "a.csv", {**columns, **others, **estimates})
+    log = cs.read_log(file, arm(), external=True, torque_constants=-2.0)
+    assert log.tau is None
+    np.testing.assert_allclose(log.external_torque, np.tile(-0.2 * np.arange(1, 8), (200, 1)))
+    named = cs.read_log(file, arm(), external=True, columns={"external_torque": "torque_*"})
+    np.testing.assert_allclose(named.external_torque, pushed().tau[:200])
+    with pytest.raises(cs.InputError, match="nothing holds external torques"):
+        cs.read_log(write_csv(tmp_path / "b.csv", columns), arm(), external=True)
+
+
 def test_rows_out_of_order_repeated_or_incomplete_are_mended(
     tmp_path: Path, columns: dict[str, np.ndarray]
 ) -> None:

@@ -9,6 +9,7 @@ import pytest
 from log_files import DT, arm, pushed
 
 import contactsense as cs
+from contactsense.offline.summary import contacts_of
 
 # The package has a function of the same name.
 module = import_module("contactsense.offline.replay")
@@ -56,6 +57,37 @@ def test_contacts_that_are_not_followed_are_told_apart_by_time() -> None:
     result = cs.replay(pushed(), monitor(samples=0))
     assert len(result.contacts) == 1
     assert np.isnan(result.contacts[0].link_probability)
+
+
+def ticks_of(radius: list[float], located: list[bool]) -> dict[str, np.ndarray]:
+    """Columns of one contact, whose point's x says which tick it is of."""
+    rows = len(radius)
+    points = np.outer(np.arange(rows), [1.0, 0.0, 0.0])
+    return {
+        "time": np.arange(rows) * DT,
+        "id": np.zeros(rows, dtype=int),
+        "link": np.array(["iiwa_link_7"] * rows, dtype=object),
+        "link_probability": np.where(np.isfinite(radius), 0.5, np.nan),
+        "located": np.array(located),
+        "region_radius": np.array(radius),
+        **{name: points for name in ("point", "point_local", "force")},
+    }
+
+
+@pytest.mark.parametrize(
+    ("radius", "located", "told"),
+    [
+        # Ahead of the posterior, a contact was located that it then does not locate.
+        ([np.nan, 0.2, 0.3], [True, False, False], 2),
+        ([np.nan, 0.02, 0.3], [True, True, False], 1),
+        ([np.nan, np.nan, np.nan], [True, True, False], 1),
+        ([np.nan, np.nan, np.nan], [False, False, False], 2),
+    ],
+)
+def test_the_place_is_what_the_posterior_says(radius: list[float], located: list[bool], told: int) -> None:
+    (contact,) = contacts_of(ticks_of(radius, located))
+    assert contact.point[0] == told
+    assert contact.located == located[told]
 
 
 def test_an_external_torque_alone_is_enough(result: cs.Replay) -> None:

@@ -28,8 +28,8 @@ SIGNATURES = {
     "NoiseModel": "*, torque=0.05, velocity=0.0, relative=0.03, model=0.1, model_time=1.0, "
     "friction=0.0, bias=0.0",
     "calibrate": "robot, log, *, false_alarms_per_hour=1.0, payload_link=None",
-    "read_log": "path, robot, *, columns=None, topics=None, units=None, torque_constants=None, rate=None, "
-    "sensors=()",
+    "read_log": "path, robot, *, columns=None, topics=None, units=None, torque_constants=None, "
+    "external=False, rate=None, sensors=()",
     "replay": "log, monitor, *, on_progress=None",
     "Replay.to_parquet": "folder",
     "Replay.to_json_lines": "path",

@@ -9,7 +9,10 @@ import time
 
 from .machine import describe, use_one_core
 
-NAMES = ("observer", "compensation", "monitor", "noisy", "contact_map", "closest", "rays", "particle_filter")
+NAMES = (
+    *("observer", "compensation", "monitor", "noisy", "contact_map", "closest", "rays", "particle_filter"),
+    "log",
+)
 
 
 def main() -> int:
@@ -27,15 +30,26 @@ def main() -> int:
     # Not before: libraries read the number of threads when they are loaded.
     import contactsense as cs
 
-    from . import closest, compensation, contact_map, monitor, noisy, observer, particle_filter, rays, table
+    from . import (
+        closest,
+        compensation,
+        contact_map,
+        log,
+        monitor,
+        noisy,
+        observer,
+        particle_filter,
+        rays,
+        table,
+    )
     from .timing import Pace
 
     if cs.build_profile != "release":
         print(f"contactsense is a {cs.build_profile} build; build with `maturin develop -r`", file=sys.stderr)
         return 2
     clock = time.perf_counter if arguments.wall else time.process_time
-    pace = Pace(3, 0.002, 2, 2, clock) if arguments.quick else Pace(60, 0.005, 20, 40, clock)
-    all_modules = (observer, compensation, monitor, noisy, contact_map, closest, rays, particle_filter)
+    pace = Pace(3, 0.002, 2, 2, clock, 12_000) if arguments.quick else Pace(60, 0.005, 20, 40, clock)
+    all_modules = (observer, compensation, monitor, noisy, contact_map, closest, rays, particle_filter, log)
     modules = dict(zip(NAMES, all_modules, strict=True))
     comparisons = []
     for name in arguments.only or NAMES:

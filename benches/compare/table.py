@@ -52,13 +52,14 @@ def _rows(comparison: Comparison) -> list[tuple[str, ...]]:
     ours = comparison.timings[0]
     limits = []
     if comparison.max_us is not None:
-        limits.append(f"<= {comparison.max_us:g} us")
+        limits.append(f"<= {comparison.max_us:g} {comparison.unit}")
     if comparison.min_ratio is not None:
         limits.append(f">= {comparison.min_ratio:g}x")
     if comparison.max_worst_us is not None:
         limits.append(f"max <= {comparison.max_worst_us:g} us")
     ends = ("", "", ", ".join(limits), VERDICTS[comparison.passed])
-    first = (comparison.task, ours.name, *_times(comparison, ours), *ends)
+    task = comparison.task if comparison.unit == "us" else f"{comparison.task} [{comparison.unit}]"
+    first = (task, ours.name, *_times(comparison, ours), *ends)
     return [first, *(_peer_row(comparison, timing) for timing in comparison.timings[1:])]
 
 
@@ -88,7 +89,7 @@ def _span(span: tuple[float, float]) -> str:
 
 
 def as_json(comparisons: Sequence[Comparison], about: dict[str, str]) -> dict[str, Any]:
-    """Everything in the table, for a program to read; times in microseconds."""
+    """Everything in the table, for a program to read; in microseconds where `unit` names nothing else."""
     return {"about": about, "comparisons": [_comparison_json(comparison) for comparison in comparisons]}
 
 
@@ -106,6 +107,7 @@ def _comparison_json(comparison: Comparison) -> dict[str, Any]:
     ]
     return {
         "task": comparison.task,
+        "unit": comparison.unit,
         "timings": timings,
         "max_us": comparison.max_us,
         "min_ratio": comparison.min_ratio,

@@ -58,6 +58,7 @@ class Pace:
     contacts: int  # places that the monitors are touched at
     scenes: int  # of noisy contacts a robot and kind
     clock: Callable[[], float] = time.process_time
+    log_rows: int = 600_000  # of the log that is read: ten minutes at 1 kHz
 
 
 @dataclass(frozen=True)
@@ -70,6 +71,7 @@ class Comparison:
     min_ratio: float | None = None  # of the second to ours
     max_worst_us: float | None = None  # of our slowest call, where `samples` are of single calls
     has_tail: bool = False  # whether `samples` are of single calls where nothing is asked of the slowest
+    unit: str = "us"  # of samples and limits, where they are no times
 
     def ratio(self, timing: Timing) -> float:
         """Of the medians: how many times as long as ours it takes."""

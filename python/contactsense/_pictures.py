@@ -11,6 +11,7 @@ from ._extras import require
 from .errors import InputError
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 # Colours that stay apart for colour-blind eyes (Okabe and Ito 2008).
@@ -88,6 +89,11 @@ def picture_folder(argument: str, path: str | os.PathLike[str]) -> Path:
     if not os.access(folder, os.W_OK):
         raise InputError(f"{argument}: cannot write into '{path}': permission denied")
     return folder
+
+
+def legend_above(axes: Axes) -> None:
+    """Puts a legend of one line above a plot, at its right end: it hides nothing."""
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=9, frameon=False, borderaxespad=0.2)
 
 
 def save_picture(

@@ -40,14 +40,20 @@ def franka_touch(
     tune: Annotated[
         bool, typer.Option("--tune", help="Choose the settings anew on the tuning files instead.")
     ] = False,
+    calibrations: Annotated[
+        Path | None,
+        typer.Option(help="Folder to write the calibration of each log to, for contactsense replay."),
+    ] = None,
 ) -> None:
     """Contacts of a real Franka arm: whether, how soon and on which link they are detected."""
     require("plot", "matplotlib")
-    from .franka_touch import plot, report, study
+    from .franka_touch import calibrated, plot, report, study
 
     picture = picture_file("png", png)
     result = study.run(data, tune=tune, plot_log=plot_log)
     plot.save_plot(result, picture, plot_log)
+    if calibrations is not None:
+        calibrated.save_calibrations(result.logs, result.calibrations, calibrations)
     if as_json:
         print_json(report.as_data(result))
     else:

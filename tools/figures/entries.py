@@ -21,6 +21,15 @@ FIGURES = (
         table=studies.franka_touch_table,
     ),
     Figure(
+        "franka_replay",
+        "The same logs one by one, as `contactsense replay` prints them with the calibration of the others.",
+        (*STUDY, "franka_touch", "--data", "{data}", "--json", "--png", "franka_touch.png"),
+        "All contacts of each log.",
+        "docs/franka_logs.md",
+        reduce=studies.franka_replay,
+        table=studies.franka_replay_table,
+    ),
+    Figure(
         "single_contacts",
         "Single contacts with ideal torques, 100 on every link, in random poses.",
         (*STUDY, "single_contacts", "--json"),

@@ -48,6 +48,34 @@ def franka_touch_table(result: Any) -> str:
     return table(header, rows)
 
 
+def franka_replay(raw: Raw) -> list[dict[str, Any]]:
+    """Each log with the calibration of the others."""
+    (study,) = raw[""]
+    kept = ("touches", "detected", "false_alarms", "delay_median", "delay_max", "exact")
+    return [
+        {"name": file["name"], "link": file["link"], **{name: file["summary"][name] for name in kept}}
+        for file in study["calibrated"]["files"]
+    ]
+
+
+def franka_replay_table(result: Any) -> str:
+    """One row a log."""
+    header = (
+        *("Log", "Link", "Contacts by hand", "Detected", "False alarms"),
+        *("Onset delay, median / maximum", "Correct link"),
+    )
+    rows = [
+        [
+            *(log["name"], str(log["link"]), str(log["touches"]), str(log["detected"])),
+            str(log["false_alarms"]),
+            f"{1e3 * log['delay_median']:.0f} / {1e3 * log['delay_max']:.0f} ms",
+            f"{round(log['exact'] * log['touches'])} / {log['touches']}",
+        ]
+        for log in result
+    ]
+    return table(header, rows)
+
+
 def single_contacts(raw: Raw) -> dict[str, Any]:
     """Counts of every outcome, and the worst errors of the exact points, by robot."""
     result = {}

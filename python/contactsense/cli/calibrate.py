@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -15,6 +16,9 @@ from ..calibration import calibrate
 from ..offline.residuals import residuals, settled
 from .log_options import LogOptions
 from .shared_options import with_shared_options
+
+# What `calibrate` asks for [s].
+_SHORTEST = 10.0
 
 
 def register(parent: typer.Typer) -> None:
@@ -42,6 +46,13 @@ def command(
     png = optional_picture("png", png)
     loaded = options.load_robot()
     measured = options.load_log(log, loaded)
+    seconds = float(measured.time[-1] - measured.time[0])
+    if seconds < _SHORTEST:
+        print(
+            f"contactsense: {log}: {seconds:.1f} s are short; record at least {_SHORTEST:g} s in which all "
+            "joints move",
+            file=sys.stderr,
+        )
     learnt = calibrate(loaded, measured, false_alarms_per_hour=false_alarms, payload_link=payload_link)
     before, after = residuals(loaded, measured), residuals(loaded, measured, learnt)
     rows = settled(measured)

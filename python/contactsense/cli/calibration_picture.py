@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from .._pictures import ESTIMATE, GREY, save_picture
+from .._pictures import ESTIMATE, GREY, legend_above, save_picture
 from ..calibration import Calibration
 from ..log import Log
 from ..offline.residuals import settled
@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Rows = NDArray[np.float64]
+
+# Axes of a motion show so much at least: a joint that hardly moves should look like it [rad, m; a second].
+_LEAST_RANGE, _LEAST_SPEED = 0.1, 0.1
 
 
 def save_calibration_picture(
@@ -33,9 +36,9 @@ def save_calibration_picture(
             left, right = axes[joint]
             _draw_torque(left, log.time[rows], before[rows, joint], after[rows, joint], name)
             velocity = log.v[rows, joint]
-            right.plot(_position(log, joint)[rows], velocity, color=GREY, linewidth=0.6)
+            _draw_motion(right, _position(log, joint)[rows], velocity)
             if joint == 0:
-                left.legend(loc="upper right", ncols=2, frameon=False)
+                legend_above(left)
                 left.set_title("External torque without contact [Nm]")
                 right.set_title("Motion: velocity over position")
         axes[-1][0].set_xlabel("time [s]")
@@ -49,6 +52,20 @@ def _draw_torque(axes: Axes, time: Rows, before: Rows, after: Rows, name: str) -
     axes.plot(time, after, color=ESTIMATE, linewidth=0.8, label="calibrated")
     axes.axhline(0.0, color=GREY, linewidth=0.5)
     axes.set_ylabel(name, fontsize=8)
+
+
+def _draw_motion(axes: Axes, position: Rows, velocity: Rows) -> None:
+    axes.plot(position, velocity, color=GREY, linewidth=0.6)
+    axes.set_xlim(_at_least(_LEAST_RANGE, axes.get_xlim()))
+    axes.set_ylim(_at_least(_LEAST_SPEED, axes.get_ylim()))
+    axes.locator_params(nbins=4)
+    axes.ticklabel_format(useOffset=False)
+
+
+def _at_least(width: float, limits: tuple[float, float]) -> tuple[float, float]:
+    low, high = limits
+    missing = max(0.0, width - (high - low)) / 2.0
+    return low - missing, high + missing
 
 
 def _position(log: Log, joint: int) -> Rows:

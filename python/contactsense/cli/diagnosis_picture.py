@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from .._pictures import ESTIMATE, GREY, save_picture
+from .._pictures import ESTIMATE, GREY, legend_above, save_picture
 from ..log import Log
 from ..offline.residuals import settled
 
@@ -32,8 +32,8 @@ def save_diagnosis_picture(path: Path, log: Log, robot: _core.Robot, residual: N
             )
             own.axhline(0.0, color=GREY, linewidth=0.5)
             own.set_ylabel(name, fontsize=8)
-        axes[0].set_title("Torque of each joint, and what of it the model does not explain [Nm]")
-        axes[0].legend(loc="upper right", ncols=2, frameon=False)
+        axes[0].set_title("Torque, and what of it the model does not explain [Nm]")
+        legend_above(axes[0])
         axes[-1].set_xlabel("time [s]")
 
     return save_picture("png", path, (10.0, 1.5 * len(robot.joint_names) + 1.0), draw)

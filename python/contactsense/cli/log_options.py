@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fnmatch
 import logging
+import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -19,6 +20,8 @@ from ..log import Log, read_log
 from ..robot import DESCRIPTIONS, Robot
 
 _Geometry = Literal["collision", "visual", "collision_or_visual"]
+# A warning of one link is of its mesh.
+_OF_MESH = re.compile(r"link '(.*?)': ")
 _GEOMETRIES: tuple[_Geometry, ...] = ("collision", "visual", "collision_or_visual")
 
 RobotOption = Annotated[
@@ -63,6 +66,14 @@ ConstantsOption = Annotated[
         "--torque-constants", help="Torque for each recorded unit, one or one a joint: 0.1,0.1,0.08."
     ),
 ]
+ExternalOption = Annotated[
+    bool,
+    typer.Option(
+        "--external",
+        help="Take the vendor's external torque in place of the motors' torques; --torque-constants=-1 "
+        "turns its sign.",
+    ),
+]
 RateOption = Annotated[
     float | None,
     typer.Option("--rate", help="Interpolate to so many rows a second (default: rows as they are)."),
@@ -82,10 +93,17 @@ class LogOptions:
     topic: TopicOption = None
     unit: UnitOption = None
     torque_constants: ConstantsOption = None
+    external: ExternalOption = False
     rate: RateOption = None
 
     def load_robot(self) -> Robot:
-        """The robot."""
+        """The robot; its warnings are printed on stderr."""
+        robot = self._robot()
+        for line in _summary(robot.warnings):
+            print(f"{robot.name}: {line}", file=sys.stderr)
+        return robot
+
+    def _robot(self) -> Robot:
         if self.robot in DESCRIPTIONS:
             return Robot.named(self.robot)
         shapes = next((known for known in _GEOMETRIES if known == self.geometry), None)
@@ -94,6 +112,7 @@ class LogOptions:
                 f"geometry: must be collision, visual or collision_or_visual, not {self.geometry!r}"
             )
         load = partial(
+            _quietly,
             Robot.from_urdf,
             self.robot,
             package_dirs=self.package_dir or [],
@@ -108,22 +127,19 @@ class LogOptions:
         for key, value in pairs("lock", self.lock, default="0").items():
             matching = [key]
             if "*" in key:
-                known = known or _quietly(load).joint_names
+                known = known or load().joint_names
                 matching = fnmatch.filter(known, key)
             joints.update(dict.fromkeys(matching, _number("lock", value)))
         return load(locked_joints=joints)
 
     def reading(self, sensors: Mapping[ForceTorqueSensor, str | None] | None = None) -> dict[str, Any]:
         """Arguments of `read_log` by name."""
-        constants: list[float] | float | None = None
-        if self.torque_constants is not None:
-            constants = [_number("torque-constants", it) for it in self.torque_constants.split(",")]
-            constants = constants[0] if len(constants) == 1 else constants
         return {
             "columns": pairs("column", self.column),
             "topics": self.topic or None,
             "units": pairs("unit", self.unit),
-            "torque_constants": constants,
+            "torque_constants": numbers("torque-constants", self.torque_constants),
+            "external": self.external,
             "rate": self.rate,
             "sensors": sensors or {},
         }
@@ -137,12 +153,22 @@ class LogOptions:
         return log
 
 
-def _quietly(load: Callable[[], Robot]) -> Robot:
-    """Warnings of a robot are logged when it is loaded with its joints locked."""
+def _summary(warnings: Sequence[str]) -> list[str]:
+    """Warnings of a robot; those of meshes, of which there may be hundreds, as one line."""
+    links = {found[1] for text in warnings if (found := _OF_MESH.match(text))}
+    others = [text for text in warnings if not _OF_MESH.match(text)]
+    if not links:
+        return others
+    count = len(warnings) - len(others)
+    return [*others, f"meshes of {len(links)} links are open or were repaired; Robot.warnings lists {count}"]
+
+
+def _quietly(load: Callable[..., Robot], *arguments: Any, **options: Any) -> Robot:
+    """Without the warnings in the log: they are printed in short."""
     logger = logging.getLogger("contactsense")
     before, logger.disabled = logger.disabled, True
     try:
-        return load()
+        return load(*arguments, **options)
     finally:
         logger.disabled = before
 
@@ -160,6 +186,18 @@ def pairs(option: str, given: Sequence[str] | None, default: str | None = None) 
             raise InputError(f"{option}: must be NAME=VALUE, not '{text}'")
         found[name] = value if equals else str(default)
     return found
+
+
+def numbers(option: str, text: str | None) -> list[float] | float | None:
+    """One number, or several with commas between them.
+
+    Raises:
+        InputError: one of them is no number.
+    """
+    if text is None:
+        return None
+    several = [_number(option, it) for it in text.split(",")]
+    return several[0] if len(several) == 1 else several
 
 
 def _number(option: str, text: str) -> float:

@@ -10,6 +10,7 @@ import typer
 
 from .._core import ForceTorqueSensor
 from ..calibration import Calibration
+from .log_options import numbers
 from .sensor_options import ConventionOption, SensorOption, WantedOption, sensors_of
 
 
@@ -21,9 +22,10 @@ class MonitorOptions:
         Path | None, typer.Option(help="File of `contactsense calibrate`: noise, friction, masses, levels.")
     ] = None
     threshold: Annotated[
-        float | None,
+        str | None,
         typer.Option(
-            help="Torque that is a contact, on every joint in Nm (default: 0.5, or the calibration's)."
+            help="Torque that is a contact in Nm, one or one a joint: 2,2,1 "
+            "(default: 0.5, or the calibration's)."
         ),
     ] = None
     gain: Annotated[float, typer.Option(help="Observer gain in 1/s.")] = 50.0
@@ -53,5 +55,5 @@ class MonitorOptions:
             "calibration": None if self.calibration is None else Calibration.load(self.calibration),
         }
         if self.threshold is not None:
-            arguments["torque_threshold"] = self.threshold
+            arguments["torque_threshold"] = numbers("threshold", self.threshold)
         return arguments

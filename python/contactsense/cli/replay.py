@@ -135,9 +135,9 @@ def print_contacts(path: Path, result: Replay, as_json: bool) -> None:
     share = float(np.mean(result.ticks["collision"])) if len(result.ticks["time"]) else 0.0
     if share > _OFTEN:
         print(
-            f"contactsense: {path}: in contact for {share:.0%} of the time, which points to errors of the "
-            "model: calibrate with motion without contact (contactsense calibrate), or ask what is wrong "
-            "(contactsense diagnose)",
+            f"contactsense: {path}: in contact for {share:.0%} of the time. If the robot was not, its model "
+            "has errors: calibrate with motion without contact (contactsense calibrate), or ask what is "
+            "wrong (contactsense diagnose)",
             file=sys.stderr,
         )
 

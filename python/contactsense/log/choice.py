@@ -48,7 +48,10 @@ class Group:
 
 
 def choose(
-    recording: Recording, joints: Sequence[str], columns: Mapping[str, str | Sequence[str]]
+    recording: Recording,
+    joints: Sequence[str],
+    columns: Mapping[str, str | Sequence[str]],
+    quantities: Sequence[str] = QUANTITIES,
 ) -> dict[str, Group]:
     """The groups that hold the most of the robot's joints, by quantity.
 
@@ -57,7 +60,7 @@ def choose(
     """
     found: dict[str, Group] = {}
     groups = [group for table in recording.tables for group in _groups(table, joints)]
-    for quantity in QUANTITIES:
+    for quantity in quantities:
         if quantity in columns:
             found[quantity] = _named(recording, joints, quantity, columns[quantity])
             continue
@@ -74,7 +77,8 @@ def choose(
     if POSITION not in found:
         raise InputError(_nothing("positions", joints, recording))
     if not {TORQUE, EXTERNAL, CURRENT} & set(found):
-        raise InputError(_nothing("torques", joints, recording))
+        what = "torques" if TORQUE in quantities else "external torques"
+        raise InputError(_nothing(what, joints, recording))
     return found
 
 

@@ -29,6 +29,7 @@ def read_log(
     topics: Sequence[str] | None = None,
     units: Mapping[str, str] | None = None,
     torque_constants: ArrayLike | Mapping[str, float] | None = None,
+    external: bool = False,
     rate: float | None = None,
     sensors: Sensors = (),
 ) -> Log:
@@ -37,9 +38,8 @@ def read_log(
     Topics, columns, joints and units are found by their names where these are unambiguous; `Log.reading` says
     what was chosen, mended and left out. Joints are matched by name, in any order, with or without namespaces
     and prefixes; columns that are only numbered, such as `q0` to `q6`, are the robot's joints in order. Rows
-    are kept as they were
-    measured: values of other topics are the last ones by then, missing velocities are central differences
-    over 20 ms, or over two rows where rows are farther apart.
+    are kept as they were measured: values of other topics are the last ones by then, missing velocities are
+    central differences over 20 ms, or over two rows where rows are farther apart.
 
     Args:
         path: the file, the folder of a bag, or several files that together have the columns.
@@ -55,6 +55,9 @@ def read_log(
         torque_constants: torque for each unit of the recorded torque or current [Nm/A], signs and gear ratios
             included; one number, one for each of `robot.actuated_joint_names`, or by name. Needed for
             currents.
+        external: whether the vendor's external torque is taken alone, in place of the torques of the motors;
+            `torque_constants` then multiply it: -1 where it is what the robot exerts (Franka), not what acts
+            on it.
         rate: of a log that is interpolated to equal steps [1/s]; None keeps the rows.
         sensors: the `ForceTorqueSensor`s, or their names, that `Log.wrenches` has, in this order, such as
             `monitor.sensors`. Readings are found by their frame, topic or columns. Where names do not tell, a
@@ -90,6 +93,8 @@ def read_log(
 
     if not isinstance(robot, _core.Robot):
         raise InputError(f"robot: expected a contactsense.Robot, got {type(robot).__name__}")
+    if external and robot.floating_base:
+        raise InputError("external: an external torque alone is read for robots with a fixed base")
     columns, units = dict(columns or {}), dict(units or {})
     wanted = wanted_sensors(sensors, robot)
     for name in columns:
@@ -102,4 +107,4 @@ def read_log(
     constants = check_constants(torque_constants, robot.actuated_joint_names)
     recording = read_recording([Path(each) for each in paths], topics)
     title = ", ".join(os.fspath(each) for each in paths)
-    return robot_log(title, recording, robot, Wishes(columns, units, constants, rate, wanted))
+    return robot_log(title, recording, robot, Wishes(columns, units, constants, external, rate, wanted))

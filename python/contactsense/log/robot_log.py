@@ -15,7 +15,7 @@ from .choice import Group, choose
 from .held import LARGEST
 from .joint_columns import JointColumns
 from .log import Log
-from .quantities import CURRENT, EXTERNAL, POSITION, TORQUE, VELOCITY
+from .quantities import CURRENT, EXTERNAL, POSITION, QUANTITIES, TORQUE, VELOCITY
 from .reading import Reading
 from .recording import Recording, Table
 from .resample import at_rate, differences
@@ -27,6 +27,10 @@ from .wrenches import WRENCHES, wrench_rows
 Rows = NDArray[np.float64]
 
 
+# What is looked for where the external torque alone is wanted.
+_OF_EXTERNAL = (POSITION, VELOCITY, EXTERNAL)
+
+
 @dataclass(frozen=True)
 class Wishes:
     """What the user says of a file; see `read_log`."""
@@ -34,6 +38,7 @@ class Wishes:
     columns: Mapping[str, str | Sequence[str]]
     units: Mapping[str, str]
     torque_constants: NDArray[np.float64] | None
+    external: bool
     rate: float | None
     sensors: tuple[WantedSensor, ...]
 
@@ -47,7 +52,7 @@ class Wishes:
 def robot_log(path: str, recording: Recording, robot: _core.Robot, wishes: Wishes) -> Log:
     """The log of what a recording has of a robot; see `read_log`."""
     joints = JointColumns(robot)
-    groups = choose(recording, joints.names, wishes.columns)
+    groups = choose(recording, joints.names, wishes.columns, _OF_EXTERNAL if wishes.external else QUANTITIES)
     left_out = [*recording.left_out, *left_out_by_base(recording, groups, robot.floating_base)]
     if TORQUE in groups:
         groups.pop(CURRENT, None)
@@ -77,8 +82,9 @@ def robot_log(path: str, recording: Recording, robot: _core.Robot, wishes: Wishe
     unknown = list(dict.fromkeys(name for group in groups.values() for name in group.others))
     others = [f"columns of joints that the robot does not have: {', '.join(unknown)}"] if unknown else []
     left_out += [*extra.left_out, *others]
-    q, v = joints.configuration(values[POSITION]), joints.velocity(values[VELOCITY])
-    torques = {name: joints.velocity(values[name]) for name in (TORQUE, EXTERNAL) if name in values}
+    # Each is given up for its copy: long logs take much memory.
+    q, v = joints.configuration(values.pop(POSITION)), joints.velocity(values.pop(VELOCITY))
+    torques = {name: joints.velocity(values.pop(name)) for name in (TORQUE, EXTERNAL) if name in values}
     if robot.floating_base:
         write_base(q, v, values)
         torques[TORQUE] = torques[TORQUE][:, 6:]
@@ -169,7 +175,8 @@ def _to_units(
                 f"torque_constants: {groups[CURRENT].title} are no torques; give the torque for each ampere"
             )
         values[TORQUE] = values.pop(CURRENT)
-    if wishes.torque_constants is not None and TORQUE in values:
-        values[TORQUE] = values[TORQUE] * wishes.torque_constants
-        chosen.append("torque: what was recorded, times torque_constants")
+    wanted = EXTERNAL if wishes.external else TORQUE
+    if wishes.torque_constants is not None and wanted in values:
+        values[wanted] = values[wanted] * wishes.torque_constants
+        chosen.append(f"{wanted}: what was recorded, times torque_constants")
     return chosen

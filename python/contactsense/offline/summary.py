@@ -14,8 +14,9 @@ from .result import ReplayedContact
 def contacts_of(ticks: Mapping[str, NDArray[Any]]) -> tuple[ReplayedContact, ...]:
     """The contacts in the order of their begin.
 
-    A contact's place is that of the last tick that has one, since what is known of it grows; its link is the
-    one of most ticks where no tick has a place.
+    A contact's place is that of the last tick that locates it, else of the last that has one, since what is
+    known of it grows. The first ticks, before there is a posterior, count only where there is none later. Its
+    link is the one of most ticks where no tick has a place.
     """
     numbers, first = np.unique(ticks["id"], return_index=True)
     ordered = numbers[np.argsort(first, kind="stable")]
@@ -24,7 +25,9 @@ def contacts_of(ticks: Mapping[str, NDArray[Any]]) -> tuple[ReplayedContact, ...
 
 def _contact(number: int, ticks: Mapping[str, NDArray[Any]], rows: NDArray[np.intp]) -> ReplayedContact:
     placed = rows[np.all(np.isfinite(ticks["point_local"][rows]), axis=1)]
-    located = rows[ticks["located"][rows]]
+    judged = placed[np.isfinite(ticks["region_radius"][placed])]
+    placed = judged if len(judged) else placed
+    located = placed[ticks["located"][placed]]
     forces = np.linalg.norm(ticks["force"][rows], axis=1)
     known = np.isfinite(forces)
     peak = rows[int(np.argmax(np.where(known, forces, -1.0)))] if known.any() else None

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
-from contactsense import Calibration, ContactMonitor, InputError, Log, Robot, calibrate
+import contactsense
+from contactsense import Calibration, ContactMonitor, InputError, Log, Replay, Robot, calibrate
 
 from .logs import BoolArray, TouchLog
-from .replay import Replay
 from .settings import CALIBRATED, Settings
 from .touches import EARLY
 
@@ -41,11 +42,10 @@ def calibration_of(robot: Robot, logs: Sequence[TouchLog]) -> Calibration:
     times, rows = [], []
     start = 0.0
     for log in logs:
-        free = untouched(log)
-        # Some rows come with the time of the row before.
-        free[1:] &= np.diff(log.time) > 0.0
-        times.append(log.time[free] - log.time[0] + start)
-        rows.append(np.hstack([log.q, log.dq, log.vendor])[free])
+        free, vendor = untouched(log), log.vendor
+        assert vendor.external_torque is not None  # it was read for it
+        times.append(log.time[free] + start)
+        rows.append(np.hstack([vendor.q, vendor.v, vendor.external_torque])[free])
         start = times[-1][-1] + PAUSE
     q, v, external = np.split(np.concatenate(rows), 3, axis=1)
     return calibrate(robot, Log(np.concatenate(times), q, v, external_torque=external))
@@ -54,24 +54,33 @@ def calibration_of(robot: Robot, logs: Sequence[TouchLog]) -> Calibration:
 def replay_calibrated(robot: Robot, log: TouchLog, calibration: Calibration) -> tuple[Replay, Settings]:
     """Runs the monitor over the vendor's torque of a log; the settings are those of its calibration."""
     monitor = ContactMonitor(robot, dt=log.dt, calibration=calibration)
-    rows = zip(log.q, log.vendor, log.dq, strict=True)
-    reports = [monitor.update_external(q, external, v=v) for q, external, v in rows]
-    told = Replay(
-        np.array([report.collision for report in reports]),
-        np.array([report.onset for report in reports]),
-        np.array([report.external_torque for report in reports]),
-        tuple(next(iter(report.contacts), None) for report in reports),
-    )
+    told = contactsense.replay(log.vendor, monitor)
     return told, replace(CALIBRATED, noise=tuple(monitor.torque_threshold))
 
 
-def replay_by_others(robot: Robot, logs: Sequence[TouchLog]) -> list[tuple[Replay, Settings]]:
-    """Each log with a calibration of all other logs.
+def calibrations_by_others(robot: Robot, logs: Sequence[TouchLog]) -> tuple[Calibration, ...]:
+    """For each log a calibration of all other logs; none where these are too few."""
+    try:
+        return tuple(calibration_of(robot, [other for other in logs if other is not log]) for log in logs)
+    except InputError:
+        return ()
+
+
+def save_calibrations(
+    logs: Sequence[TouchLog], calibrations: Sequence[Calibration], folder: Path
+) -> list[Path]:
+    """Writes each log's calibration as `NAME.yaml` into a folder; returns the files.
 
     Raises:
-        InputError: there are too few other logs.
+        InputError: there are none, or the folder cannot be written to.
     """
-    return [
-        replay_calibrated(robot, log, calibration_of(robot, [other for other in logs if other is not log]))
-        for log in logs
-    ]
+    if not calibrations:
+        raise InputError("calibrations: the data has too few logs for them")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        files = [folder / f"{log.name}.yaml" for log in logs]
+        for file, calibration in zip(files, calibrations, strict=True):
+            calibration.save(file, source=f"the logs other than {file.stem}, without contact")
+    except OSError as cause:
+        raise InputError(f"calibrations: cannot write into '{folder}': {cause.strerror or cause}") from cause
+    return files

@@ -25,7 +25,7 @@ import numpy as np
 
 from contactsense import ContactSenseError, InputError
 
-from .logs import COLUMNS, FILE_NAME, log_of_table, read_columns
+from .logs import COLUMNS, FILE_NAME, read_table
 
 REPOSITORY = "https://github.com/MindLabZHAW/tactileGestureDetection"
 # Inside the public repository; each log has a folder of its own.
@@ -56,9 +56,7 @@ def convert(
     for name in logs:
         if not FILE_NAME.fullmatch(f"{name}.csv"):
             raise InputError(f"logs: '{name}' is no log; a name is the letter of the link and a number: a4")
-        table = read_columns(folder / name / FILE)
-        log_of_table(name, table, str(folder / name / FILE))
-        tables[name] = table
+        tables[name] = read_table(folder / name / FILE)
     written = []
     try:
         Path(target).mkdir(parents=True, exist_ok=True)

@@ -1,8 +1,7 @@
-"""Reading the logs."""
+"""Reading the logs: what `contactsense.read_log` makes of them, and the labels beside it."""
 
 from __future__ import annotations
 
-import gzip
 import os
 import re
 from dataclasses import dataclass
@@ -12,7 +11,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from contactsense import InputError
+import contactsense
+from contactsense import InputError, Log, Robot
+from contactsense.log.files import read_recording
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -30,11 +31,8 @@ class TouchLog:
     """One file; n rows."""
 
     name: str
-    time: FloatArray  # (n,) [s]
-    q: FloatArray  # (n, 7) [rad]
-    dq: FloatArray  # (n, 7) [rad/s]
-    tau: FloatArray  # (n, 7) measured joint torques [Nm]
-    vendor: FloatArray  # (n, 7) the vendor's external torque, acting on the robot [Nm]
+    measured: Log  # with the torques of the motors
+    vendor: Log  # with the vendor's external torque, acting on the robot, in their place
     label: BoolArray  # (n,) whether a person touches
 
     @property
@@ -43,9 +41,14 @@ class TouchLog:
         return LINK_OF_LETTER[self.name[0]]
 
     @property
+    def time(self) -> FloatArray:
+        """`(n,)`, from the first row on [s]."""
+        return self.measured.time
+
+    @property
     def dt(self) -> float:
-        """Mean time between two rows [s]."""
-        return float((self.time[-1] - self.time[0]) / (len(self.time) - 1))
+        """Time between two rows [s], as `contactsense replay` takes it."""
+        return float(np.median(np.diff(self.time)))
 
     @cached_property
     def touches(self) -> list[tuple[int, int]]:
@@ -56,15 +59,16 @@ class TouchLog:
     @property
     def repeated(self) -> float:
         """Share of rows that repeat the row before: the robot had sent nothing new."""
-        state = np.hstack([self.q, self.dq, self.tau, self.vendor])
+        parts = (self.measured.q, self.measured.v, self.measured.tau, self.vendor.external_torque)
+        state = np.hstack([part for part in parts if part is not None])
         return float(np.mean(np.all(state[1:] == state[:-1], axis=1)))
 
 
-def read_logs(folder: str | os.PathLike[str]) -> list[TouchLog]:
-    """All logs of a folder, by name.
+def log_files(folder: str | os.PathLike[str]) -> list[Path]:
+    """The logs of a folder, by name.
 
     Raises:
-        InputError: there is no such folder, no log in it, or a log cannot be used; names the file and column.
+        InputError: there is no such folder, or no log in it.
     """
     path = Path(folder)
     if not path.is_dir():
@@ -77,60 +81,54 @@ def read_logs(folder: str | os.PathLike[str]) -> list[TouchLog]:
     names = [file.name.partition(".")[0] for file in files]
     if len(set(names)) < len(names):
         raise InputError(f"data: '{path}' has a log twice, as .csv and .csv.gz")
-    return [read_log(file) for file in files]
+    return files
 
 
-def read_log(path: Path) -> TouchLog:
+def read_log(path: Path, robot: Robot) -> TouchLog:
     """One log.
 
     Raises:
         InputError: names the file and column.
     """
-    return log_of_table(path.name.partition(".")[0], read_columns(path), str(path))
+    table = read_table(path)
+    measured = contactsense.read_log(path, robot)
+    # The vendor's sign is that of the measured torque: what the robot exerts.
+    vendor = contactsense.read_log(path, robot, external=True, torque_constants=-1.0)
+    # Rows with the time of the row before are left out of a log.
+    kept = np.diff(table[:, 0], prepend=-np.inf) > 0.0
+    return TouchLog(path.name.partition(".")[0], measured, vendor, table[kept, -1] == 1)
 
 
-def read_columns(path: Path) -> FloatArray:
-    """The rows of a CSV file, ordered as `COLUMNS`; the file may have more columns, in any order.
+def read_table(path: Path) -> FloatArray:
+    """The rows of a file, ordered as `COLUMNS`; the file may have more columns, in any order.
 
     Raises:
-        InputError: names the file and column.
+        InputError: a column or value cannot be used; names the file and column.
     """
     try:
-        with gzip.open(path, "rt") if path.suffix == ".gz" else path.open() as file:
-            header = [name.strip() for name in file.readline().split(",")]
-            missing = [name for name in COLUMNS if name not in header]
-            if missing:
-                wanted = ", ".join(COLUMNS)
-                raise InputError(f"data: '{path}' lacks the column {missing[0]}; wanted: {wanted}")
-            lines = file.readlines()
-            used = [header.index(name) for name in COLUMNS]
-            # No lines would be a warning of NumPy's.
-            return np.loadtxt(lines, delimiter=",", ndmin=2, usecols=used) if lines else np.empty((0, 0))
-    except InputError:
-        raise
-    except (OSError, EOFError, ValueError) as cause:
+        tables = read_recording([path]).tables
+    except (OSError, InputError) as cause:
         raise InputError(f"data: '{path}' cannot be read as a table of numbers: {cause}") from cause
+    columns = tables[0].columns
+    missing = [name for name in COLUMNS if name not in columns]
+    if missing:
+        raise InputError(f"data: '{path}' lacks the column {missing[0]}; wanted: {', '.join(COLUMNS)}")
+    table = np.column_stack([columns[name] for name in COLUMNS])
+    _check(table, path)
+    return table
 
 
-def log_of_table(name: str, table: FloatArray, origin: str) -> TouchLog:
-    """A log of rows ordered as `COLUMNS`; `origin` names it in errors.
-
-    Raises:
-        InputError: a value cannot be used.
-    """
+def _check(table: FloatArray, path: Path) -> None:
     if len(table) < 2:
-        raise InputError(f"data: '{origin}' has {len(table)} rows; at least 2 are wanted")
+        raise InputError(f"data: '{path}' has {len(table)} rows; at least 2 are wanted")
     bad = np.argwhere(~np.isfinite(table))
     if len(bad):
         row, column = bad[0]
-        raise InputError(f"data: '{origin}', row {row + 1}, column {COLUMNS[column]}: must be finite")
+        raise InputError(f"data: '{path}', row {row + 1}, column {COLUMNS[column]}: must be finite")
     time, label = table[:, 0], table[:, -1]
     if np.any(np.diff(time) < 0) or time[-1] <= time[0]:
-        raise InputError(f"data: '{origin}', column time: must not decrease, and must advance")
+        raise InputError(f"data: '{path}', column time: must not decrease, and must advance")
     if not np.all((label == 0) | (label == 1)):
-        raise InputError(f"data: '{origin}', column label: must be 0 or 1")
+        raise InputError(f"data: '{path}', column label: must be 0 or 1")
     if not np.any(label == 1):
-        raise InputError(f"data: '{origin}', column label: no contact in this log")
-    q, dq, tau, vendor = np.split(table[:, 1:-1], len(VECTORS), axis=1)
-    # The vendor's sign is that of the measured torque: what the robot exerts.
-    return TouchLog(name, time, q.copy(), dq.copy(), tau.copy(), -vendor, label == 1)
+        raise InputError(f"data: '{path}', column label: no contact in this log")

@@ -37,7 +37,7 @@ def save_plot(study: Study, path: Path, log_name: str | None = None) -> None:
 
 
 def _draw_log(figure: Any, study: Study, index: int) -> None:
-    log, told, judged = study.logs[index], study.measured.replays[index], study.measured.logs[index]
+    log, ticks, judged = study.logs[index], study.measured.replays[index].ticks, study.measured.logs[index]
     threshold = study.measured.settings.detection_threshold
     # Base joints feel newtonmetres where the wrist feels tenths.
     base, wrist = figure.subplots(2, 1, sharex=True)
@@ -48,8 +48,8 @@ def _draw_log(figure: Any, study: Study, index: int) -> None:
             axes.axvspan(touch.start - log.time[0], touch.end - log.time[0], color="0.88", lw=0, zorder=0)
         for joint in joints:
             label = f"joint {joint + 1} (threshold {threshold[joint]:.2g})"
-            axes.plot(time, told.external_torque[:, joint], color=colors[joint], lw=1.1, label=label)
-        for onset in log.time[told.onset]:
+            axes.plot(time, ticks["external_torque"][:, joint], color=colors[joint], lw=1.1, label=label)
+        for onset in log.time[ticks["onset"]]:
             false = onset in judged.false_onsets
             axes.axvline(onset - log.time[0], color=FALSE if false else "k", lw=1, ls="--", zorder=1)
         axes.set_ylabel("external torque [Nm]")

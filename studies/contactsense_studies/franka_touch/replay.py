@@ -1,33 +1,23 @@
-"""A log through `ContactMonitor`, row by row as a controller would have called it."""
+"""A log through `ContactMonitor`, as `contactsense replay` does it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from contactsense import Contact, ContactMonitor, MomentumObserver, Robot
+import contactsense
+from contactsense import ContactMonitor, Log, Replay, Robot
 
-from .logs import BoolArray, FloatArray, TouchLog
+from .logs import FloatArray, TouchLog
 from .settings import Settings
 
-# Passes the vendor's torque, which is filtered already, through the observer unchanged [1/s].
-VENDOR_GAIN = 1e5
 # Rows this near to the first touch may already be part of it [s].
 UNTOUCHED_MARGIN = 0.3
 # The observer's first rows, still settling [s].
 SETTLING = 0.2
-
-
-@dataclass(frozen=True)
-class Replay:
-    """What the monitor said of every row."""
-
-    collision: BoolArray  # (n,)
-    onset: BoolArray  # (n,)
-    external_torque: FloatArray  # (n, 7), free of bias [Nm]
-    # The first of each row, where the monitor's own contacts are judged.
-    contacts: tuple[Contact | None, ...] = ()
+# No torque reaches it: the bias that a monitor with this threshold takes off is none [Nm].
+NEVER = 1e6
 
 
 def replay(robot: Robot, log: TouchLog, settings: Settings) -> Replay:
@@ -43,33 +33,26 @@ def replay(robot: Robot, log: TouchLog, settings: Settings) -> Replay:
         torque_threshold=settings.detection_threshold,
         bias_time_constant=settings.bias_time_constant,
         hold_time=settings.hold_time,
+        samples=0,  # its contacts are not asked for: `judge` names links from the mean torque of a touch
     )
-    dq, tau = signals(robot, log, settings)
-    reports = [monitor.update(*row) for row in zip(log.q, dq, tau, strict=True)]
-    return Replay(
-        np.array([report.collision for report in reports]),
-        np.array([report.onset for report in reports]),
-        np.array([report.external_torque for report in reports]),
-    )
+    return contactsense.replay(signals(log, settings), monitor)
 
 
-def signals(robot: Robot, log: TouchLog, settings: Settings) -> tuple[FloatArray, FloatArray]:
-    """Velocity and torque `(n, 7)` for the observer: measured, or such that it sees the vendor's torque."""
-    if settings.source == "measured":
-        return log.dq, log.tau
-    still = np.zeros(robot.nv)
-    weight = np.array([robot.inverse_dynamics(q, still, still) for q in log.q])
-    return np.zeros_like(log.dq), weight - log.vendor
+def signals(log: TouchLog, settings: Settings) -> Log:
+    """The log with the torques that the settings are for."""
+    return log.measured if settings.source == "measured" else log.vendor
 
 
 def noise(robot: Robot, log: TouchLog, settings: Settings) -> FloatArray:
     """Standard deviation of the external torque before the first touch `(7,)` [Nm]."""
-    observer = MomentumObserver(robot, dt=log.dt, gain=settings.observer_gain)
-    dq, tau = signals(robot, log, settings)
-    torque = np.array([observer.update(*row) for row in zip(log.q, dq, tau, strict=True)])
+    monitor = ContactMonitor(
+        robot, dt=log.dt, observer_gain=settings.observer_gain, torque_threshold=NEVER, samples=0
+    )
     until = log.time[log.touches[0][0]] - UNTOUCHED_MARGIN
-    rows = (log.time > log.time[0] + SETTLING) & (log.time < until)
-    deviation: FloatArray = torque[rows].std(axis=0)
+    ticks = contactsense.replay(
+        signals(log, settings)[: int(np.count_nonzero(log.time < until))], monitor
+    ).ticks
+    deviation: FloatArray = ticks["external_torque"][ticks["time"] > SETTLING].std(axis=0)
     return deviation
 
 

@@ -6,12 +6,12 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from contactsense import InputError, Robot
+from contactsense import Calibration, InputError, Replay, Robot
 
 from ..example_robots import panda
-from .calibrated import replay_by_others
-from .logs import TouchLog, read_logs
-from .replay import Replay, replay
+from .calibrated import calibrations_by_others, replay_calibrated
+from .logs import TouchLog, log_files, read_log
+from .replay import replay
 from .settings import CALIBRATED, MEASURED, TUNING_FILES, VENDOR, Settings
 from .summary import Summary, summarise
 from .touches import LogResult, judge
@@ -39,9 +39,14 @@ class Evaluation:
 
 @dataclass(frozen=True)
 class Study:
-    """All evaluations of the same logs; `calibrated` is None if a calibration needs more logs."""
+    """All evaluations of the same logs.
+
+    `calibrations` has one for each log, from the others; there are none, and `calibrated` is None, if a
+    calibration needs more logs.
+    """
 
     logs: tuple[TouchLog, ...]
+    calibrations: tuple[Calibration, ...]
     measured: Evaluation
     vendor: Evaluation
     calibrated: Evaluation | None
@@ -58,12 +63,12 @@ def evaluate(robot: Robot, logs: Sequence[TouchLog], settings: Settings) -> Eval
     return _judged(robot, logs, settings, [(told, settings) for told in replays])
 
 
-def evaluate_calibrated(robot: Robot, logs: Sequence[TouchLog]) -> Evaluation | None:
-    """Each log with noise and levels of the others; None if a calibration needs more of them."""
-    try:
-        replays = replay_by_others(robot, logs)
-    except InputError:
-        return None
+def evaluate_calibrated(
+    robot: Robot, logs: Sequence[TouchLog], calibrations: Sequence[Calibration]
+) -> Evaluation:
+    """Runs the monitor over each log with its calibration."""
+    pairs = zip(logs, calibrations, strict=True)
+    replays = [replay_calibrated(robot, log, calibration) for log, calibration in pairs]
     return _judged(robot, logs, CALIBRATED, replays)
 
 
@@ -87,17 +92,20 @@ def run(data: str | os.PathLike[str], *, tune: bool = False, plot_log: str | Non
         InputError: the folder or a log cannot be used, or `plot_log` is none of the logs.
         MissingExtraError: example-robot-data is not installed.
     """
-    logs = read_logs(data)
+    files = log_files(data)
+    robot = panda()
+    logs = [read_log(file, robot) for file in files]
     names = [log.name for log in logs]
     if plot_log is not None and plot_log not in names:
         raise InputError(f"plot_log: there is no log '{plot_log}'; there are {', '.join(names)}")
-    robot = panda()
     measured, vendor = MEASURED, VENDOR
     if tune:
         measured, vendor = (choose_settings(robot, logs, source) for source in ("measured", "vendor"))
+    calibrations = calibrations_by_others(robot, logs)
     return Study(
         tuple(logs),
+        calibrations,
         evaluate(robot, logs, measured),
         evaluate(robot, logs, vendor),
-        evaluate_calibrated(robot, logs),
+        evaluate_calibrated(robot, logs, calibrations) if calibrations else None,
     )

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from contactsense import Contact, ContactIsolator, Robot
+from contactsense import ContactIsolator, Replay, Robot
 
 from .logs import BoolArray, FloatArray, TouchLog
-from .replay import Replay
 from .settings import Settings
 
 # Labels are by hand: an onset this long before a label's begin is still that touch's [s].
@@ -51,7 +49,8 @@ def judge(robot: Robot, log: TouchLog, told: Replay, settings: Settings, tuning:
     An onset belongs to a touch if it lies between `EARLY` before the label's begin and the label's end. A
     touch whose alarm merely continues from before has no onset: missed. All other onsets are false alarms.
     """
-    onsets = log.time[told.onset]
+    ticks = told.ticks
+    onsets = log.time[ticks["onset"]]
     claimed = np.zeros(len(onsets), dtype=bool)
     free = np.ones(len(log.time), dtype=bool)
     isolator = ContactIsolator(robot, torque_threshold=settings.isolation_threshold, samples=0)
@@ -63,10 +62,10 @@ def judge(robot: Robot, log: TouchLog, told: Replay, settings: Settings, tuning:
         free &= (log.time < start - EARLY) | (log.time > end)
         delay = float(onsets[own][0]) - start if own.any() else None
         rows = slice(first, last + 1)
-        if told.contacts:
-            link, point = last_contact(robot, told.contacts[rows])
+        if settings.source == "calibrated":
+            link, point = last_contact(robot, told, rows)
         else:
-            link, point = name_link(robot, isolator, log.q[rows], told.external_torque[rows])
+            link, point = name_link(robot, isolator, log.measured.q[rows], ticks["external_torque"][rows])
         results.append(TouchResult(start, end, delay, link, point is not None, point))
     return LogResult(
         log.name,
@@ -76,7 +75,7 @@ def judge(robot: Robot, log: TouchLog, told: Replay, settings: Settings, tuning:
         tuple(results),
         tuple(float(time) for time in onsets[~claimed]),
         duration(log, free),
-        duration(log, free & told.collision),
+        duration(log, free & ticks["collision"]),
     )
 
 
@@ -93,12 +92,17 @@ def name_link(
     return link_number(robot, contact.link), contact.point_local if contact.located else None
 
 
-def last_contact(robot: Robot, contacts: Sequence[Contact | None]) -> tuple[int | None, FloatArray | None]:
-    """Link and, where located, point in its frame, of the last contact that the monitor reported."""
-    contact = next((contact for contact in reversed(contacts) if contact is not None), None)
-    if contact is None:
+def last_contact(robot: Robot, told: Replay, rows: slice) -> tuple[int | None, FloatArray | None]:
+    """Link and, where located, point in its frame, of the last contact that is reported in some rows."""
+    contacts = told.contact_ticks
+    before = int(np.searchsorted(contacts["row"], rows.stop))
+    if before == 0 or contacts["row"][before - 1] < rows.start:
         return None, None
-    return link_number(robot, contact.link), contact.point_local if contact.located else None
+    # The first of that row.
+    last = int(np.searchsorted(contacts["row"], contacts["row"][before - 1]))
+    return link_number(robot, contacts["link"][last]), contacts["point_local"][last] if contacts["located"][
+        last
+    ] else None
 
 
 def link_number(robot: Robot, link: str) -> int:

@@ -8,8 +8,8 @@ from dataclasses import replace
 from contactsense import InputError, Robot
 
 from .logs import TouchLog
-from .replay import VENDOR_GAIN, replay, with_noise_of
-from .settings import TUNING_FILES, Settings, Source
+from .replay import replay, with_noise_of
+from .settings import TUNING_FILES, UNUSED_GAIN, Settings, Source
 from .summary import Summary, summarise
 from .touches import judge
 
@@ -53,7 +53,7 @@ def choose_settings(robot: Robot, logs: Sequence[TouchLog], source: Source) -> S
 
 
 def _detection_grid(robot: Robot, logs: list[TouchLog], source: Source) -> Iterator[Settings]:
-    for gain in GAINS if source == "measured" else (VENDOR_GAIN,):
+    for gain in GAINS if source == "measured" else (UNUSED_GAIN,):
         base = Settings(source, (0.0,) * robot.nv, gain, 1.0, 1.0, HOLD_TIMES[0], BIAS_TIME_CONSTANTS[0])
         base = with_noise_of(robot, logs, base)
         for factor in DETECTION_FACTORS:

@@ -266,7 +266,9 @@ impl Report<'_> {
         let of_joint = |joint: usize| match own {
             OwnFault::Armature => format!("{:.3}", size(joint, Term::Armature)),
             OwnFault::Friction => {
-                format!("{:.2} + {:.2} per rad/s", size(joint, COULOMB), size(joint, Term::Viscous))
+                let viscous = size(joint, Term::Viscous);
+                let sign = if viscous < 0.0 { '-' } else { '+' };
+                format!("{:.2} {sign} {:.2} per rad/s", size(joint, COULOMB), viscous.abs())
             }
             OwnFault::Bias => format!("{:+.2}", size(joint, Term::Bias)),
         };
