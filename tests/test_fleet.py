@@ -164,12 +164,13 @@ def ends(settings: Settings, log: Path) -> Outcome:
 
 @pytest.mark.parametrize("engine", ["local", pytest.param("ray", marks=needs_ray)])
 def test_a_process_that_is_killed_takes_no_other_along(engine: str, tmp_path: Path) -> None:
+    module = {"local": "local", "ray": "on_ray"}[engine]
     script = f"""
 import json, pathlib, test_fleet
-from contactsense.fleet.engine import open_engine
+from contactsense.fleet.{module} import {engine}_engine as opened
 if __name__ == "__main__":
     folder = pathlib.Path({str(tmp_path)!r})
-    with open_engine({engine!r}, test_fleet.ends, None, 2, None) as run:
+    with opened(test_fleet.ends, None, 2{", None" * (engine == "ray")}) as run:
         pairs = list(run([pathlib.Path(name) for name in "bac"]))
     outcomes = {{str(log): outcome.failure for log, outcome in pairs}}
     (folder / "outcomes.json").write_text(json.dumps(outcomes))

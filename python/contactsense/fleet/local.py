@@ -13,13 +13,13 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 
-from .engine import Outcomes, Run, Work
+from .engine import Engine, Outcomes, Work
 from .one_log import Outcome
 from .settings import Settings
 
 
 @contextmanager
-def local_engine(work: Work, settings: Settings, workers: int | None) -> Iterator[Run]:
+def local_engine(work: Work, settings: Settings, workers: int | None) -> Iterator[Engine]:
     """Each log has a process of its own, so that one that is killed takes no other along."""
     yield partial(_run, work, settings, workers or _cores())
 

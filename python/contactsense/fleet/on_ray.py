@@ -12,7 +12,7 @@ from typing import Any
 
 from .._extras import require
 from ..errors import InputError
-from .engine import Outcomes, Run, Work
+from .engine import Engine, Outcomes, Work
 from .one_log import Outcome
 from .settings import Settings
 
@@ -22,7 +22,7 @@ _AHEAD = 4
 
 
 @contextmanager
-def ray_engine(work: Work, settings: Settings, workers: int | None, address: str | None) -> Iterator[Run]:
+def ray_engine(work: Work, settings: Settings, workers: int | None, address: str | None) -> Iterator[Engine]:
     """Uses a Ray that this process is connected to; if there is none, it starts or joins one."""
     require("fleet", "ray")
     import ray

@@ -64,7 +64,8 @@ def _tables(result: Replay, path: Path, made_from: str, damage: str, ticks: bool
         "damage": damage,
         "input": made_from,
     }
-    tables = {name: as_table(columns) for name, columns in replay_tables(result).items()}
+    found = replay_tables(result.contacts, result.contact_ticks, result.ticks)
+    tables = {name: as_table(columns) for name, columns in found.items()}
     if not ticks:
         del tables["ticks"]
     tables[LOGS] = pa.table({name: [value] for name, value in row.items()})

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from contextlib import closing
+from contextlib import AbstractContextManager, closing
 from pathlib import Path
 
 from .dataset import Part, clear_unfinished
-from .engine import open_engine
+from .engine import Engine
+from .local import local_engine
+from .on_ray import ray_engine
 from .one_log import Outcome, replay_log
 from .result import FleetReplay
 from .settings import Settings
@@ -36,7 +38,7 @@ class Run:
         try:
             if not self._wanted():
                 return
-            with open_engine(engine, replay_log, settings, workers, address) as run:
+            with _open(engine, settings, workers, address) as run:
                 for _ in range(_TRIES):
                     with closing(run(self._wanted())) as outcomes:
                         for log, outcome in outcomes:
@@ -66,6 +68,14 @@ class Run:
             damaged={log: damages[log] for log in self._logs if damages.get(log)},
             interrupted=interrupted,
         )
+
+
+def _open(
+    engine: str, settings: Settings, workers: int | None, address: str | None
+) -> AbstractContextManager[Engine]:
+    if engine == "ray":
+        return ray_engine(replay_log, settings, workers, address)
+    return local_engine(replay_log, settings, workers)
 
 
 def _damage_known(settings: Settings, log: Path) -> str | None:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,12 +14,8 @@ from .. import _core
 from ..errors import InputError
 from .log import Log
 
-# Each sensor or its name, and where its readings are: a topic, a pattern of columns or all six; None to find
-# out.
-Sensors = (
-    Iterable["_core.ForceTorqueSensor | str"]
-    | Mapping["_core.ForceTorqueSensor | str", "str | Sequence[str] | None"]
-)
+if TYPE_CHECKING:
+    from .sensors import Sensors
 
 
 def read_log(

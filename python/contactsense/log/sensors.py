@@ -9,7 +9,13 @@ import numpy as np
 
 from .. import _core
 from ..errors import InputError
-from .read import Sensors
+
+# Each sensor or its name, and where its readings are: a topic, a pattern of columns or all six; None to find
+# out.
+Sensors = (
+    Iterable[_core.ForceTorqueSensor | str]
+    | Mapping[_core.ForceTorqueSensor | str, str | Sequence[str] | None]
+)
 
 # Two frames nearer to each other than this [m, rad] are one, as numbers of descriptions are rounded.
 _SAME = 1e-6

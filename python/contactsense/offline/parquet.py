@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._extras import require
-from .result import Replay, ReplayedContact
 from .whole import whole_file
 
 _CONTACT: dict[str, Any] = {
@@ -31,16 +30,14 @@ def write_parquet(tables: Mapping[str, Mapping[str, NDArray[Any]]], folder: str 
             pyarrow.parquet.write_table(as_table(columns), file)
 
 
-def replay_tables(result: Replay) -> dict[str, Mapping[str, NDArray[Any]]]:
-    """The columns of each table by its name."""
-    return {
-        "contacts": _contact_columns(result.contacts),
-        "contact_ticks": result.contact_ticks,
-        "ticks": result.ticks,
-    }
+def replay_tables(
+    contacts: Sequence[Any], contact_ticks: Mapping[str, NDArray[Any]], ticks: Mapping[str, NDArray[Any]]
+) -> dict[str, Mapping[str, NDArray[Any]]]:
+    """The columns of each table of a `Replay` by its name."""
+    return {"contacts": _contact_columns(contacts), "contact_ticks": contact_ticks, "ticks": ticks}
 
 
-def _contact_columns(contacts: Sequence[ReplayedContact]) -> dict[str, NDArray[Any]]:
+def _contact_columns(contacts: Sequence[Any]) -> dict[str, NDArray[Any]]:
     """Columns with one value a contact."""
     columns: dict[str, NDArray[Any]] = {}
     for name, kind in _CONTACT.items():

@@ -117,7 +117,7 @@ class Replay:
         """
         from .parquet import replay_tables, write_parquet
 
-        write_parquet(replay_tables(self), folder)
+        write_parquet(replay_tables(self.contacts, self.contact_ticks, self.ticks), folder)
 
     def to_json_lines(self, path: str | os.PathLike[str]) -> None:
         """Writes one JSON object a contact, a line each; see `ReplayedContact.to_dict`.
