@@ -24,6 +24,7 @@ FUNCTION = re.compile(r"`([\w/]+\.rs)::(\w+)`")
 # A pattern that the output of each example must match.
 FINDINGS = {
     "explore_a_touch.py": r"_4, 1\d\.\d N\nphysics: 201 samples(.|\n)* 0\.[0-3]\d Nm(.|\n)*within \d mm",
+    "first_contact.py": r"^contact at 1\.50\d s\niiwa_link_6, point \[0\.5\d? +0\.0\d? +0\.(59|6\d?) *\] .*, (39|4[01]) N\n$",
     "own_robot.py": r"warning: .*'elbow'(.|\n)*warning: .*'lower'(.|\n)*refused: link 'upper'",
     "surface_queries.py": r"watertight: True(.|\n)*ray 0: in .*\nray 0: out .*\n1000 samples",
     "touch_in_simulation.py": r"detected [1-9] ms (.|\n)*iiwa_link_7, located: True\npoint error: [0-4]\.",
@@ -46,8 +47,10 @@ def test_every_example_has_findings() -> None:
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.name)
 def test_example_runs(path: Path, tmp_path: Path) -> None:
-    if path.name in ("explore_a_touch.py", "touch_in_simulation.py"):
-        pytest.importorskip("mujoco")
+    text = path.read_text(encoding="utf-8")
+    for word, package in (("sim", "mujoco"), ("to_parquet", "pyarrow")):
+        if re.search(rf"\b{word}\b", text):
+            pytest.importorskip(package)
     printed = run(str(path), folder=tmp_path)
     assert re.search(FINDINGS[path.name], printed), printed
     assert list(tmp_path.iterdir()) == []
