@@ -33,6 +33,12 @@ FINDINGS = {
     "first_contact.py": r"at 1\.50\d s\niiwa_link_6, point \[0\.52 0\.01 0\.6 *\] .* \d\.\d cm, (39|4[01]) N",
     "own_robot.py": r"warning: .*'elbow'(.|\n)*warning: .*'lower'(.|\n)*refused: link 'upper'",
     "reaction.py": r" [67]\d\.\d N .*(\n.*: 2\d N at most, [0-3]\.\d N at the end){3}",
+    "replay_a_log.py": (
+        r"1400 rows(.|\n)*differences of positions\n"
+        r"contact from 3\.0\d to 3\.5\d s: iiwa_link_7, 3[0-4] N, point .*\n"
+        r"contact from 5\.0\d to 5\.5\d s: iiwa_link_7, 3[0-4] N, point .*\n"
+        r".* 5\.\d\d s\n.*\ncontacts.parquet: 2 rows, \d+ columns\nticks.parquet: 1400 rows"
+    ),
     "surface_queries.py": r"watertight: True(.|\n)*ray 0: in .*\nray 0: out .*\n1000 samples",
     "touch_in_simulation.py": r"detected [1-9] ms (.|\n)*iiwa_link_7, located: True\npoint error: [0-4]\.",
     "touch_on_a_log.py": r"from 2\.0.*iiwa_link_7, 3[012] N.*\n.*from 4\.0.*iiwa_link_7, 3[012] N.*\n$",
