@@ -42,6 +42,11 @@ FINDINGS = {
     "surface_queries.py": r"watertight: True(.|\n)*ray 0: in .*\nray 0: out .*\n1000 samples",
     "touch_in_simulation.py": r"detected [1-9] ms (.|\n)*iiwa_link_7, located: True\npoint error: [0-4]\.",
     "touch_on_a_log.py": r"from 2\.0.*iiwa_link_7, 3[012] N.*\n.*from 4\.0.*iiwa_link_7, 3[012] N.*\n$",
+    "ur_with_currents.py": (
+        r"current from 'actual_current_0'(.|\n)*\nCoulomb friction \[ *(9|1\d)\.(.|\n)*"
+        r"without.* (100|9\d) % of the time\nwith.*: 2 contacts, 1[01] % of the time\n"
+        r"contact at 5\.0\d s: elbow_link .*\ncontact at 11.* wrist_3_link .* 6\d N, point within [1-4] cm"
+    ),
 }
 
 
