@@ -35,6 +35,10 @@ FINDINGS = {
         r"^contact detected \d\d ms .*\n  utorso, .*\n  total force 5[5-9] N, true force 57 N, .* 1[67].. N\n"
         r"contact detected \d\d ms .*\n  l_hand, located: True, by l_hand\n  total force (3[789]|40) N, .*\n$"
     ),
+    "mujoco_truth.py": (
+        r"^0\.5 s: 0 contacts\n  truth    \[0\. 0\. 0\. (.|\n)*1\.4 s: [1-9] contacts(.|\n)*"
+        r"torque 1[3-7]\d Nm, mean error 0\.[01]\d\d Nm, "
+    ),
     "own_robot.py": r"warning: .*'elbow'(.|\n)*warning: .*'lower'(.|\n)*refused: link 'upper'",
     "reaction.py": r" [67]\d\.\d N .*(\n.*: 2\d N at most, [0-3]\.\d N at the end){3}",
     "replay_a_log.py": (
