@@ -40,6 +40,10 @@ FINDINGS = {
         r"torque 1[3-7]\d Nm, mean error 0\.[01]\d\d Nm, "
     ),
     "own_robot.py": r"warning: .*'elbow'(.|\n)*warning: .*'lower'(.|\n)*refused: link 'upper'",
+    "particle_filter_near_the_base.py": (
+        r"^0\.0 s: \+- [23]\d cm, (.*\n){3}6\.0 s: \+- \d cm, \{'iiwa_link_2': 0\.[5-9].*\n"
+        r"iiwa_link_2: error [0-4]\.\d cm, in the 90 % region: True\nforce (2[89]|3[01]) N, true force 30 N\n"
+    ),
     "reaction.py": r" [67]\d\.\d N .*(\n.*: 2\d N at most, [0-3]\.\d N at the end){3}",
     "replay_a_log.py": (
         r"1400 rows(.|\n)*differences of positions\n"
