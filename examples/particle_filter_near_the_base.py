@@ -1,7 +1,7 @@
 """A contact on the second link of an arm is located by small motions.
 
-Only two joints are loaded by it, so that one pose leaves most of the arm possible. While the arm moves by up
-to 2 degrees, the torques change in a way that few places explain. The estimate reports what remains uncertain.
+It loads only two joints, so that one pose leaves most of the arm possible. While the arm moves by up to
+2 degrees, the torques change in a way that few places explain. The estimate reports what remains uncertain.
 
 Requires MuJoCo: pip install '.[sim]'
 """

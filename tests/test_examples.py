@@ -75,6 +75,11 @@ def test_every_example_has_findings() -> None:
     assert [path.name for path in EXAMPLES] == sorted(FINDINGS)
 
 
+def test_the_page_of_examples_lists_all() -> None:
+    page = (ROOT / "docs" / "examples.md").read_text(encoding="utf-8")
+    assert sorted(re.findall(r"^\| \[(\w+\.py)\]", page, re.MULTILINE)) == sorted(FINDINGS)
+
+
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.name)
 def test_example_runs(path: Path, tmp_path: Path) -> None:
     text = path.read_text(encoding="utf-8")
