@@ -12,7 +12,7 @@ from contactsense import sim
 
 DT = 0.001  # [s]
 SPEED = 0.2  # of the hand, forward and back [m/s]
-TURN = 0.2  # of the joints where the contact has no point [rad/s]
+TURN = 0.2  # of the joints while the torques do not determine a force [rad/s]
 DAMPING = 20.0  # of the admittance [Nm s/rad]
 WALL, STIFFNESS = 0.04, 10_000.0  # in front of the hand [m], [N/m]
 START, END = 0.4, 1.1  # of the motion [s]
@@ -37,7 +37,8 @@ def retract(report: cs.ContactReport, q: np.ndarray) -> np.ndarray:
     if not report.contacts:
         return np.zeros(robot.nv)
     contact = report.contacts[0]
-    if contact.located:
+    # The likeliest point will do for the direction of a retreat, also where it is not `located`.
+    if np.isfinite([contact.point, contact.force]).all():
         direction = contact.force / np.linalg.norm(contact.force)
         return move_point(q, contact.link, contact.point, SPEED * direction)
     return TURN * report.external_torque / np.linalg.norm(report.external_torque)
@@ -55,8 +56,8 @@ def push_against_wall(reaction: Reaction | None) -> tuple[float, float]:
     real = sim.perturbed_model(robot.model, mass=0.02, seed=0)
     arm = sim.SimulatedRobot(real, dt=DT, noise=sim.TorqueNoise(newton_metres=0.05, seed=0))
     monitor = cs.ContactMonitor(robot, dt=DT, torque_threshold=1.0, bias_time_constant=0.3)
-    controller = sim.ComputedTorqueController(robot.model)
-    goal, v = np.array([0.0, 0.5, 0.0, -1.4, 0.0, 1.2, 0.0]), np.zeros(robot.nv)
+    controller = sim.ComputedTorqueController(robot.model, kp=2500.0, kd=100.0)  # stiff, as arms are
+    goal, v = np.array([0.3, 0.6, -0.4, -1.4, 0.5, 1.2, 0.1]), np.zeros(robot.nv)
     arm.reset(goal)
     front = robot.surface(LINK).closest_points([[0.3, 0.0, 0.04]]).points[0]
     wall = (arm.link_pose(LINK) @ [*front, 1.0])[0] + WALL

@@ -23,7 +23,7 @@ def write_csv(path: Path) -> None:
     q = np.array([0.0, 0.5, 0.0, -1.4, 0.0, 0.9, 0.0]) + np.outer(np.sin(time), sway)
     v, a = np.outer(np.cos(time), sway), np.outer(-np.sin(time), sway)
     tau = np.array([robot.inverse_dynamics(*row) for row in zip(q, v, a, strict=True)])
-    tau += rng.normal(0.0, 0.3, robot.nv) + rng.normal(0.0, 0.05, tau.shape)  # [Nm]
+    tau += rng.normal(0.0, 0.6, robot.nv) + rng.normal(0.0, 0.05, tau.shape)  # [Nm]
     face = robot.surface("iiwa_link_7").closest_points([[0.2, 0.0, 0.03]])
     for row in np.flatnonzero(((time >= 3.0) & (time < 3.4)) | ((time >= 5.0) & (time < 5.4))):
         pose = robot.link_pose(q[row], "iiwa_link_7")

@@ -44,7 +44,10 @@ FINDINGS = {
         r"^0\.0 s: \+- [23]\d cm, (.*\n){3}6\.0 s: \+- \d cm, \{'iiwa_link_2': 0\.[5-9].*\n"
         r"iiwa_link_2: error [0-4]\.\d cm, in the 90 % region: True\nforce (2[89]|3[01]) N, true force 30 N\n"
     ),
-    "reaction.py": r" [67]\d\.\d N .*(\n.*: 2\d N at most, [0-3]\.\d N at the end){3}",
+    "reaction.py": (
+        r"no reaction: 2\d\d N .*\nstop: 2\d N at most, [3-5]\.\d N at the end\n"
+        r"retract: 2\d N at most, 0\.\d N at the end\nadmittance: 2\d N at most, [01]\.\d N at the end\n"
+    ),
     "replay_a_log.py": (
         r"1400 rows(.|\n)*differences of positions\n"
         r"contact from 3\.0\d to 3\.5\d s: iiwa_link_7, 3[0-4] N, point .*\n"
