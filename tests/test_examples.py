@@ -23,11 +23,45 @@ FUNCTION = re.compile(r"`([\w/]+\.rs)::(\w+)`")
 
 # A pattern that the output of each example must match.
 FINDINGS = {
+    "calibrate_then_detect.py": (
+        r"without.* 9\d % of the time\nwith.*: 2 contacts, \d % of the time\n"
+        r"push on iiwa_link_5.* ms, iiwa_link_5 .*\n.*\n"
+        r"push on iiwa_link_7.* ms, iiwa_link_7 .*, located: True\n  4\d N;.* error [01]\."
+    ),
+    "control_loop.py": r"(like: .* 1 to \d\d ms, 0 false contacts\n  onset [23]\d ms (.*\n){2}(fri-|$)){2}",
     "explore_a_touch.py": r"_4, 1\d\.\d N\nphysics: 201 samples(.|\n)* 0\.[0-3]\d Nm(.|\n)*within \d mm",
+    "first_contact.py": r"at 1\.50\d s\niiwa_link_6, point \[0\.52 0\.01 0\.6 *\] .* \d\.\d cm, (39|4[01]) N",
+    "humanoid_with_sensors.py": (
+        r"^contact detected \d\d ms .*\n  utorso, .*\n  total force 5[5-9] N, true force 57 N, .* 1[67].. N\n"
+        r"contact detected \d\d ms .*\n  l_hand, located: True, by l_hand\n  total force (3[789]|40) N, .*\n$"
+    ),
+    "mujoco_truth.py": (
+        r"^0\.5 s: 0 contacts\n  truth    \[0\. 0\. 0\. (.|\n)*1\.4 s: [1-9] contacts(.|\n)*"
+        r"torque 1[3-7]\d Nm, mean error 0\.[01]\d\d Nm, "
+    ),
     "own_robot.py": r"warning: .*'elbow'(.|\n)*warning: .*'lower'(.|\n)*refused: link 'upper'",
+    "particle_filter_near_the_base.py": (
+        r"^0\.0 s: \+- [23]\d cm, (.*\n){3}6\.0 s: \+- \d cm, \{'iiwa_link_2': 0\.[5-9].*\n"
+        r"iiwa_link_2: error [0-4]\.\d cm, in the 90 % region: True\nforce (2[89]|3[01]) N, true force 30 N\n"
+    ),
+    "reaction.py": (
+        r"no reaction: 2\d\d N .*\nstop: 2\d N at most, [3-5]\.\d N at the end\n"
+        r"retract: 2\d N at most, 0\.\d N at the end\nadmittance: 2\d N at most, [01]\.\d N at the end\n"
+    ),
+    "replay_a_log.py": (
+        r"1400 rows(.|\n)*differences of positions\n"
+        r"contact from 3\.0\d to 3\.5\d s: iiwa_link_7, 3[0-4] N, point .*\n"
+        r"contact from 5\.0\d to 5\.5\d s: iiwa_link_7, 3[0-4] N, point .*\n"
+        r".* 5\.\d\d s\n.*\ncontacts.parquet: 2 rows, \d+ columns\nticks.parquet: 1400 rows"
+    ),
     "surface_queries.py": r"watertight: True(.|\n)*ray 0: in .*\nray 0: out .*\n1000 samples",
     "touch_in_simulation.py": r"detected [1-9] ms (.|\n)*iiwa_link_7, located: True\npoint error: [0-4]\.",
     "touch_on_a_log.py": r"from 2\.0.*iiwa_link_7, 3[012] N.*\n.*from 4\.0.*iiwa_link_7, 3[012] N.*\n$",
+    "ur_with_currents.py": (
+        r"current from 'actual_current_0'(.|\n)*\nCoulomb friction \[ *(9|1\d)\.(.|\n)*"
+        r"without.* (100|9\d) % of the time\nwith.*: 2 contacts, 1[01] % of the time\n"
+        r"contact at 5\.0\d s: elbow_link .*\ncontact at 11.* wrist_3_link .* 6\d N, point within [1-4] cm"
+    ),
 }
 
 
@@ -44,10 +78,17 @@ def test_every_example_has_findings() -> None:
     assert [path.name for path in EXAMPLES] == sorted(FINDINGS)
 
 
+def test_the_page_of_examples_lists_all() -> None:
+    page = (ROOT / "docs" / "examples.md").read_text(encoding="utf-8")
+    assert sorted(re.findall(r"^\| \[(\w+\.py)\]", page, re.MULTILINE)) == sorted(FINDINGS)
+
+
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.name)
 def test_example_runs(path: Path, tmp_path: Path) -> None:
-    if path.name in ("explore_a_touch.py", "touch_in_simulation.py"):
-        pytest.importorskip("mujoco")
+    text = path.read_text(encoding="utf-8")
+    for word, package in (("sim", "mujoco"), ("to_parquet", "pyarrow")):
+        if re.search(rf"\b{word}\b", text):
+            pytest.importorskip(package)
     printed = run(str(path), folder=tmp_path)
     assert re.search(FINDINGS[path.name], printed), printed
     assert list(tmp_path.iterdir()) == []

@@ -7,6 +7,7 @@ from .coordinates import Coordinates
 from .deepest import ContactQuery, DeepestPoint
 from .disturbance import TorqueError, perturbed_model
 from .exploration import joint_exploration, null_space_exploration, sliding_exploration
+from .external_torque import external_torque
 from .floor import FLOOR_TYPE, Floor
 from .friction import Friction
 from .geoms import Geom, geoms_of, named_geoms
@@ -74,6 +75,7 @@ __all__ = [
     "TrajectoryPoint",
     "Truth",
     "WrenchNoise",
+    "external_torque",
     "geoms_of",
     "joint_exploration",
     "joint_torque",

@@ -14,6 +14,7 @@ from contactsense.errors import InputError, ModelError
 from ._arrays import FloatArray, positive, vector
 from ._mujoco import mujoco
 from .coordinates import Coordinates
+from .external_torque import applied_torque
 from .floor import Floor
 from .geoms import Geom
 from .measurement import Measurement
@@ -152,11 +153,7 @@ class SimulatedRobot:
 
     def external_torque(self) -> FloatArray:
         """(nv,) what the applied forces put on the joints now: the truth an observer looks for [Nm]."""
-        total = np.zeros(self.mj_model.nv)
-        for body in np.flatnonzero(self.mj_data.xfrc_applied.any(axis=1)):
-            wrench, centre = self.mj_data.xfrc_applied[body], self.mj_data.xipos[body]
-            mujoco.mj_applyFT(self.mj_model, self.mj_data, wrench[:3], wrench[3:], centre, int(body), total)
-        return self.coordinates.v(self.q, total)
+        return self.coordinates.v(self.q, applied_torque(self.mj_model, self.mj_data))
 
     def link_pose(self, link: str) -> FloatArray:
         """(4, 4) pose of the link's frame in the world, now."""
