@@ -241,6 +241,32 @@ def test_public_logs_need_one_command(
 
 
 @pytest.mark.shared
+@pytest.mark.parametrize(
+    ("log", "robot", "more"), [("panda_free", "panda", ["panda_finger*"]), ("ur10_free", "ur10", [])]
+)
+def test_the_opposite_sign_of_public_logs_is_recognised(
+    log: str, robot: str, more: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    urdf = example(
+        {"panda": "panda_description/urdf/panda.urdf", "ur10": "ur_description/urdf/ur10_robot.urdf"}[robot]
+    )
+    arguments = [
+        "diagnose",
+        str(SHARED / "real" / log),
+        "--robot",
+        str(urdf),
+        "--package-dir",
+        str(EXAMPLE_SHARE),
+    ]
+    arguments += [word for joint in more for word in ("--lock", joint)]
+    for sign, expected in ((1, False), (-1, True)):
+        assert run([*arguments, f"--torque-constants={sign}", "--json"]) == 0
+        findings = json.loads(capsys.readouterr().out)
+        assert ("sign" in [finding["code"] for finding in findings]) == expected
+        assert not expected or findings[0]["code"] == "sign"
+
+
+@pytest.mark.shared
 def test_the_touches_of_a_public_log_are_found(capsys: pytest.CaptureFixture[str]) -> None:
     PANDA.require()
     described = ["--robot", str(PANDA.path), "--package-dir", str(EXAMPLE_SHARE), "--lock", "panda_finger*"]

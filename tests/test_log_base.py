@@ -86,9 +86,11 @@ def test_a_replay_says_what_the_live_loop_says_bit_for_bit(tmp_path: Path, name:
     assert 60.0 < contact.peak_force < 100.0
     # What is written is a log itself.
     result.to_mcap(tmp_path / "out.mcap")
-    again = cs.read_log(tmp_path / "out.mcap", humanoid(), topics=["/joint_states", "/base"])
+    own = ["/joint_states", "/base", *(f"/{sensor.name}/wrench" for sensor in FEET)]
+    again = cs.read_log(tmp_path / "out.mcap", humanoid(), topics=own, sensors=FEET)
     assert_same_motion(again, log)
     np.testing.assert_array_equal(again.tau, log.tau)
+    np.testing.assert_array_equal(again.wrenches, log.wrenches)
 
 
 def test_without_a_twist_the_pose_is_differentiated(tmp_path: Path) -> None:

@@ -24,8 +24,9 @@ _VECTORS = ("point", "point_local", "force")
 class Collector:
     """Takes in the reports of a log's rows."""
 
-    def __init__(self, log: Log, robot: _core.Robot) -> None:
-        self._log, self._robot = log, robot
+    def __init__(self, log: Log, monitor: _core.ContactMonitor) -> None:
+        robot = monitor.robot
+        self._log, self._robot, self._sensors = log, robot, monitor.sensors
         rows = len(log)
         self._collision = np.zeros(rows, dtype=bool)
         self._onset = np.zeros(rows, dtype=bool)
@@ -87,7 +88,8 @@ class Collector:
             "external_torque": self._external[done],
         }
         columns = self._columns()
-        return Replay(self._log, self._robot, ticks, columns, contacts_of(columns), interrupted)
+        contacts = contacts_of(columns)
+        return Replay(self._log, self._robot, ticks, columns, contacts, interrupted, self._sensors)
 
     def _columns(self) -> Mapping[str, NDArray[Any]]:
         rows = np.array(self._rows, dtype=np.int64)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,111 +14,36 @@ from .._extras import require
 from ..log import Log
 from ..log.base_frames import base_frames, placed
 from ..log.joint_columns import JointColumns
+from .ros_messages import NANOSECONDS, Marker, Messages
 from .whole import whole_file
 
 JOINT_STATES = "/joint_states"
 BASE = "/base"
 EXTERNAL_TORQUE = "/contactsense/external_torque"
 CONTACTS = "/contactsense/contacts"
+WRENCH = "geometry_msgs/msg/WrenchStamped"
 # Size of what is drawn: a hundred newtons are a metre, and a point is a ball of two centimetres [m].
 _METRES_PER_NEWTON = 0.01
 _BALL = 0.02
 _SHAFT, _HEAD = 0.01, 0.02
-_NANOSECONDS = 1_000_000_000
-
-
-class _Messages:
-    """Makes and packs messages."""
-
-    def __init__(self) -> None:
-        from rosbags.typesys import Stores, get_typestore
-
-        self._store = get_typestore(Stores.ROS2_HUMBLE)
-        self._types: Any = self._store.types
-
-    def definition(self, kind: str) -> bytes:
-        return self._store.generate_msgdef(kind)[0].encode()
-
-    def pack(self, message: Any, kind: str) -> bytes:
-        return bytes(self._store.serialize_cdr(message, kind))
-
-    def header(self, time: float) -> Any:
-        seconds, nanoseconds = divmod(round(time * _NANOSECONDS), _NANOSECONDS)
-        stamp = self._types["builtin_interfaces/msg/Time"](seconds, nanoseconds)
-        return self._types["std_msgs/msg/Header"](stamp, "world")
-
-    def joint_state(self, time: float, names: list[str], *values: Any) -> Any:
-        none = np.zeros(0)
-        position, velocity, effort = (none if it is None else it for it in values)
-        return self._types["sensor_msgs/msg/JointState"](self.header(time), names, position, velocity, effort)
-
-    def odometry(self, time: float, q: NDArray[np.float64], v: NDArray[np.float64], base: str) -> Any:
-        make, none = self._types, np.zeros(36)
-        point, quaternion, pose, vector, twist = (
-            make[f"geometry_msgs/msg/{name}"] for name in ("Point", "Quaternion", "Pose", "Vector3", "Twist")
-        )
-        with_pose, with_twist = (
-            make[f"geometry_msgs/msg/{name}WithCovariance"] for name in ("Pose", "Twist")
-        )
-        place = pose(point(*q[:3].tolist()), quaternion(*q[3:7].tolist()))
-        speed = twist(vector(*v[:3].tolist()), vector(*v[3:6].tolist()))
-        return make["nav_msgs/msg/Odometry"](
-            self.header(time), base, with_pose(place, none), with_twist(speed, none)
-        )
-
-    def marker(
-        self, time: float, number: int, shape: int, points: list[Any], scale: Any, seconds: float
-    ) -> Any:
-        make = self._types
-        geometry = ("Point", "Vector3", "Quaternion", "Pose")
-        point, vector, quaternion, pose = (make[f"geometry_msgs/msg/{name}"] for name in geometry)
-        colour = make["std_msgs/msg/ColorRGBA"]
-        whole, part = divmod(round(seconds * _NANOSECONDS), _NANOSECONDS)
-        at = points[0] if shape == _Marker.SPHERE else np.zeros(3)
-        fields = dict(
-            header=self.header(time),
-            ns="contact" if shape == _Marker.SPHERE else "force",
-            id=number,
-            type=shape,
-            action=0,
-            pose=pose(point(*map(float, at)), quaternion(0.0, 0.0, 0.0, 1.0)),
-            scale=vector(*map(float, scale)),
-            color=colour(0.9, 0.2, 0.1, 1.0),
-            lifetime=make["builtin_interfaces/msg/Duration"](whole, part),
-            frame_locked=False,
-            points=[] if shape == _Marker.SPHERE else [point(*map(float, it)) for it in points],
-            colors=[],
-            texture_resource="",
-            texture=make["sensor_msgs/msg/CompressedImage"](
-                self.header(time), "", np.zeros(0, dtype=np.uint8)
-            ),
-            uv_coordinates=[],
-            text="",
-            mesh_resource="",
-            mesh_file=make["visualization_msgs/msg/MeshFile"]("", np.zeros(0, dtype=np.uint8)),
-            mesh_use_embedded_materials=False,
-        )
-        return make["visualization_msgs/msg/Marker"](**fields)
-
-    def markers(self, markers: list[Any]) -> Any:
-        return self._types["visualization_msgs/msg/MarkerArray"](markers)
-
-
-class _Marker:
-    ARROW, SPHERE = 0, 2
 
 
 Columns = Mapping[str, NDArray[Any]]
 
 
 def write_mcap(
-    log: Log, ticks: Columns, found: Columns, path: str | os.PathLike[str], robot: _core.Robot
+    log: Log,
+    ticks: Columns,
+    found: Columns,
+    path: str | os.PathLike[str],
+    robot: _core.Robot,
+    sensors: Sequence[_core.ForceTorqueSensor],
 ) -> None:
     """A log with the columns of its ticks and of contacts in them; the file appears whole or not at all."""
     require("log", "rosbags", "mcap")
     from mcap.writer import Writer
 
-    messages = _Messages()
+    messages = Messages()
     with whole_file(path) as file, file.open("wb") as stream:
         writer: Any = Writer(stream)
         writer.start(profile="ros2", library="contactsense")
@@ -130,18 +55,24 @@ def write_mcap(
         }
         if robot.floating_base:
             kinds[BASE] = "nav_msgs/msg/Odometry"
+        kinds |= {_topic(sensor): WRENCH for sensor in sensors}
         for topic, kind in kinds.items():
             schema = writer.register_schema(kind, "ros2msg", messages.definition(kind))
             channels[topic] = (writer.register_channel(topic, "cdr", schema), kind)
-        for number, (time, topic, message) in enumerate(_all(log, ticks, found, robot, messages)):
+        for number, (time, topic, message) in enumerate(_all(log, ticks, found, robot, sensors, messages)):
             channel, kind = channels[topic]
-            stamp = round(time * _NANOSECONDS)
+            stamp = round(time * NANOSECONDS)
             writer.add_message(channel, stamp, messages.pack(message, kind), stamp, number)
         writer.finish()
 
 
 def _all(
-    log: Log, ticks: Columns, found: Columns, robot: _core.Robot, messages: _Messages
+    log: Log,
+    ticks: Columns,
+    found: Columns,
+    robot: _core.Robot,
+    sensors: Sequence[_core.ForceTorqueSensor],
+    messages: Messages,
 ) -> Iterator[tuple[float, str, Any]]:
     """All messages in the order of time."""
     joints = JointColumns(robot)
@@ -157,6 +88,9 @@ def _all(
     for row, time in enumerate(ticks["time"].tolist()):
         if frames is not None:
             yield time, BASE, messages.odometry(time, base_poses[row], log.v[row], base_link)
+        if log.wrenches is not None:
+            for sensor, reading in zip(sensors, log.wrenches[row].tolist(), strict=True):
+                yield time, _topic(sensor), messages.wrench(time, _frame(sensor), reading)
         own_effort = None if effort is None else effort[row]
         yield (
             time,
@@ -171,10 +105,19 @@ def _all(
                 continue
             number = int(found["id"][k]) % (1 << 31)
             ball = (_BALL, _BALL, _BALL)
-            markers.append(messages.marker(time, number, _Marker.SPHERE, [point], ball, 2.0 * step))
+            markers.append(messages.marker(time, number, Marker.SPHERE, [point], ball, 2.0 * step))
             if np.all(np.isfinite(force)):
                 ends = [point - _METRES_PER_NEWTON * force, point]
                 scale = (_SHAFT, _HEAD, 0.0)
-                markers.append(messages.marker(time, number, _Marker.ARROW, ends, scale, 2.0 * step))
+                markers.append(messages.marker(time, number, Marker.ARROW, ends, scale, 2.0 * step))
         if markers:
             yield time, CONTACTS, messages.markers(markers)
+
+
+def _topic(sensor: _core.ForceTorqueSensor) -> str:
+    return f"/{sensor.name}/wrench"
+
+
+def _frame(sensor: _core.ForceTorqueSensor) -> str:
+    """The frame of the readings: the link's, or one of the sensor's own."""
+    return sensor.link if np.array_equal(sensor.pose, np.eye(4)) else sensor.name

@@ -48,7 +48,7 @@ def replay(log: Log, monitor: _core.ContactMonitor, *, on_progress: Progress | N
         (0, 0)
     """
     _check(log, monitor)
-    collector = Collector(log, monitor.robot)
+    collector = Collector(log, monitor)
     rows = len(log)
     interrupted = False
     try:

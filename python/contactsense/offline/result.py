@@ -78,6 +78,7 @@ class Replay:
             `point_local`, `force`; see `Contact`.
         contacts: one for each contact, in the order of their begin.
         interrupted: whether Ctrl-C ended it before the log's end.
+        sensors: of the monitor, in the order of the log's wrenches.
 
     Raises:
         TypeError: an argument is missing.
@@ -101,6 +102,7 @@ class Replay:
     contact_ticks: Mapping[str, NDArray[Any]]
     contacts: tuple[ReplayedContact, ...]
     interrupted: bool
+    sensors: tuple[_core.ForceTorqueSensor, ...] = ()
 
     def __repr__(self) -> str:
         return f"Replay({len(self.ticks['time'])} rows, {len(self.contacts)} contacts)"
@@ -136,7 +138,9 @@ class Replay:
         """Writes the log with what was found as an MCAP file of ROS 2 messages, which Foxglove shows.
 
         Topics: `/joint_states` and `/contactsense/external_torque` of type `sensor_msgs/msg/JointState`, and
-        `/contactsense/contacts` of type `visualization_msgs/msg/MarkerArray`, in the frame `world`.
+        `/contactsense/contacts` of type `visualization_msgs/msg/MarkerArray`, in the frame `world`; of a
+        floating base `/base` of type `nav_msgs/msg/Odometry`; of a sensor `/NAME/wrench` of type
+        `geometry_msgs/msg/WrenchStamped`.
 
         Args:
             path: the file; one that exists is replaced.
@@ -147,7 +151,7 @@ class Replay:
         """
         from .mcap import write_mcap
 
-        write_mcap(self.log, self.ticks, self.contact_ticks, path, self.robot)
+        write_mcap(self.log, self.ticks, self.contact_ticks, path, self.robot, self.sensors)
 
 
 def _plain(value: Any) -> Any:
