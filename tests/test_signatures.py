@@ -31,6 +31,11 @@ SIGNATURES = {
     "read_log": "path, robot, *, columns=None, topics=None, units=None, torque_constants=None, "
     "external=False, rate=None, sensors=()",
     "replay": "log, monitor, *, on_progress=None",
+    "replay_fleet": "logs, robot, folder, *, name=None, reading=None, monitor=None, ticks=False, "
+    "engine='local', workers=None, address=None, on_progress=None",
+    "view": "monitor, *, port=8080",
+    "View.show": "q, report",
+    "View.close": "",
     "Replay.to_parquet": "folder",
     "Replay.to_json_lines": "path",
     "Replay.to_mcap": "path",
@@ -121,6 +126,10 @@ IN_PYTHON = {
     "calibrate",
     "read_log",
     "replay",
+    "replay_fleet",
+    "view",
+    "View.show",
+    "View.close",
     "Replay.to_parquet",
     "Replay.to_json_lines",
     "Replay.to_mcap",

@@ -6,6 +6,7 @@ import shutil
 import socket
 import subprocess
 import sys
+import threading
 import time
 import urllib.request
 from collections.abc import Iterator
@@ -21,6 +22,7 @@ from contactsense.cli.app import run
 pytest.importorskip("viser")
 from contactsense.viewer.log_page import LogPage
 from contactsense.viewer.moment import ReplayMoments
+from contactsense.viewer.slot import Slot
 
 # Seconds from the start of the log: before the push, and in the middle of it.
 BEFORE, PUSHED = 0.4, 1.1
@@ -143,6 +145,98 @@ def test_a_browser_shows_robot_and_contact(page: LogPage, tmp_path: Path) -> Non
     assert blueish[1] > blueish[0] + 300
     assert yellowish[1] > yellowish[0] + 100
     assert np.std(red[0]) > 0.02  # the robot, on white
+
+
+def test_the_page_of_a_control_loop_shows_what_is_felt(tmp_path: Path) -> None:
+    log = pushed()
+    monitor = cs.ContactMonitor(arm(), dt=DT, torque_threshold=0.6)
+    assert log.tau is not None
+    with cs.view(monitor, port=free_port()) as page:
+        assert page.address.startswith("http://127.0.0.1:")
+        for row in range(round(PUSHED / DT)):
+            report = monitor.update(log.q[row], log.v[row], log.tau[row])
+            page.show(log.q[row], report)
+        time.sleep(0.1)  # until the next one is due
+        page.show(log.q[row], report)
+        written = page._slot.read()
+        assert written is not None
+        _, q, torque, (touch,) = written
+        np.testing.assert_array_equal(q, log.q[row])
+        np.testing.assert_array_equal(torque, report.external_torque)
+        np.testing.assert_array_equal(touch.force, report.contacts[0].force)
+        assert touch.link == report.contacts[0].link
+        with urllib.request.urlopen(page.address, timeout=20) as answer:
+            assert b"<html" in answer.read(2000)
+        if chromium() is not None:
+            shot = screenshot(page.address, tmp_path / "live.png")[160:, :800]
+            assert np.count_nonzero(shot[..., 2] - shot[..., 0] > 0.3) > 300
+            assert np.count_nonzero(shot[..., 0] - shot[..., 2] > 0.3) > 100
+        time.sleep(0.1)
+        with pytest.raises(cs.InputError, match="q: must be"):
+            page.show([0.0], report)
+    assert page._process.returncode == 0
+    page.close()
+
+
+def test_an_instant_is_read_whole_or_not_at_all(tmp_path: Path) -> None:
+    """Two threads: all numbers of what is read are of one writing."""
+
+    class Report:
+        contacts = ()
+        external_torque = np.zeros(7)
+
+    writing, reading = (Slot(tmp_path / "slot", arm(), creates=creates) for creates in (True, False))
+    assert reading.read() is None
+    done = threading.Event()
+
+    def write() -> None:
+        for k in range(3000):
+            report = Report()
+            report.external_torque = np.full(7, float(k))
+            writing.write(np.full(7, float(k)), report)
+        done.set()
+
+    thread = threading.Thread(target=write)
+    thread.start()
+    whole = 0
+    while not done.is_set():
+        found = reading.read()
+        if found is not None:
+            whole += 1
+            assert len({*found[1], *found[2]}) == 1
+    thread.join()
+    assert whole > 10
+    last = reading.read()
+    assert last is not None
+    assert last[0] == 6000
+
+
+def test_the_page_ends_with_its_program(tmp_path: Path) -> None:
+    script = f"""
+import contactsense as cs, os
+monitor = cs.ContactMonitor(cs.Robot.named("iiwa14"), dt=0.001)
+page = cs.view(monitor, port={free_port()})
+print(page.address, flush=True)
+os.kill(os.getpid(), 9)
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=200)
+    address = done.stdout.strip()
+    assert address
+    until = time.monotonic() + 30.0
+    while True:
+        try:
+            urllib.request.urlopen(address, timeout=5).close()
+        except OSError:
+            break
+        assert time.monotonic() < until
+        time.sleep(0.1)
+
+
+@pytest.mark.parametrize("more", [{"port": 0}, {"monitor": 3}])
+def test_wrong_arguments_are_named(more: dict[str, object]) -> None:
+    (name,) = more
+    with pytest.raises(cs.InputError, match=f"^{name}: "):
+        cs.view(**{"monitor": cs.ContactMonitor(arm(), dt=DT), **more})
 
 
 def test_the_command_writes_a_page(tmp_path: Path) -> None:

@@ -41,6 +41,7 @@ from .fleet import FleetReplay, replay_fleet
 from .log import Log, Reading, read_log
 from .offline import Replay, ReplayedContact, replay
 from .robot import Robot
+from .viewer.view import View, view
 
 __all__ = [
     "BodyInertia",
@@ -82,6 +83,7 @@ __all__ = [
     "Surface",
     "SurfaceSamples",
     "ToolLoad",
+    "View",
     "__version__",
     "build_profile",
     "calibrate",
@@ -91,4 +93,5 @@ __all__ = [
     "read_log",
     "replay",
     "replay_fleet",
+    "view",
 ]

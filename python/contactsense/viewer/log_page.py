@@ -44,7 +44,7 @@ class LogPage:
                 host=LOOPBACK, port=port, label=f"contactsense: {title}", verbose=False
             )
         self._stage = Stage(self._server.scene, result.robot, result.log.q[0])
-        _place_camera(self._server.initial_camera, self._stage.reach)
+        place_camera(self._server.initial_camera, self._stage.reach)
         self._lock = threading.Lock()
         self._playing = threading.Event()
         self._closed = threading.Event()
@@ -141,7 +141,7 @@ def _add_torques(gui: Any, seconds: Any, result: Replay) -> None:
     )
 
 
-def _place_camera(camera: Any, reach: float) -> None:
+def place_camera(camera: Any, reach: float) -> None:
     """So that the whole robot is seen, from the front and above."""
     camera.look_at = (0.0, 0.0, 0.4 * reach)
     camera.position = (1.5 * reach, 1.1 * reach, 1.2 * reach)
