@@ -203,10 +203,19 @@ def test_both_engines_give_the_same_data_set(logs: list[Path], tmp_path: Path) -
     assert content(tmp_path / "local") == content(tmp_path / "ray")
 
 
+# Shells let what runs in the background ignore Ctrl-C, and its children inherit that.
+HEARS_CTRL_C = """
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
+from contactsense.cli.app import run
+sys.exit(run(sys.argv[1:]))
+"""
+
+
 def stopped(arguments: list[str], when: Callable[[], bool], how: int) -> int:
     """The exit code of a command that gets a signal."""
     process = subprocess.Popen(
-        [sys.executable, "-m", "contactsense.cli", *arguments],
+        [sys.executable, "-c", HEARS_CTRL_C, *arguments],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     )
