@@ -136,6 +136,12 @@ def test_thresholds_by_joint_and_an_external_torque(
         (["--threshold", "1,a"], "threshold: must be a number"),
         (["--external"], "nothing holds external torques"),
         (["--calibration", "nosuch.yaml"], "path: cannot read"),
+        (["--sensor", "wrist="], "sensor: must be LINK, NAME=LINK or NAME=LINK@TOPIC, not 'wrist='"),
+        (["--sensor", "nosuch"], "sensors: 'nosuch' is at 'nosuch', which the robot does not have"),
+        (["--sensor", "iiwa_link_7"], "no wrench is named as 'iiwa_link_7'"),
+        (["--sensor", "a=iiwa_link_7", "--sensor", "a=iiwa_link_6"], "sensors: 'a' is there twice"),
+        (["--sensor-convention", "up"], "sensor-convention: must be load or support, not 'up'"),
+        (["--wanted", "wrist"], "wanted_contacts"),
     ],
 )
 def test_an_error_is_a_line(
@@ -299,23 +305,3 @@ def test_a_urdf_may_have_a_floating_base(tmp_path: Path, capsys: pytest.CaptureF
     command = ["replay", str(file), "--robot", str(urdf), "--threshold", "1e6", "--json"]
     assert run([*command, "--floating-base"]) == 0
     assert "pose of the base from 'base_x' to 'base_qw'" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
-    ("more", "message"),
-    [
-        (["--sensor", "wrist="], "sensor: must be LINK, NAME=LINK or NAME=LINK@TOPIC, not 'wrist='"),
-        (["--sensor", "nosuch"], "sensors: 'nosuch' is at 'nosuch', which the robot does not have"),
-        (["--sensor", "iiwa_link_7"], "no wrench is named as 'iiwa_link_7'"),
-        (["--sensor", "a=iiwa_link_7", "--sensor", "a=iiwa_link_6"], "sensors: 'a' is there twice"),
-        (["--sensor-convention", "up"], "sensor-convention: must be load or support, not 'up'"),
-        (["--wanted", "wrist"], "wanted_contacts"),
-    ],
-)
-def test_an_error_in_sensors_is_a_line(
-    file: Path, more: list[str], message: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert run(replay(file, *more)) == 2
-    told = capsys.readouterr()
-    assert message in told.err
-    assert "Traceback" not in told.err

@@ -144,6 +144,20 @@ def test_a_log_that_fails_is_tried_once_more_after_all_others(logs: list[Path], 
     assert sorted(table(tmp_path / "found", "logs")["log"].to_pylist()) == sorted(map(str, [late, *logs[:2]]))
 
 
+def test_nothing_is_left_of_a_log_that_fails_since_it_changed(logs: list[Path], tmp_path: Path) -> None:
+    changed, gone = (write_log(tmp_path / f"{name}.csv", pushed()[:1300]) for name in ("changed", "gone"))
+    found = tmp_path / "found"
+    cs.replay_fleet([changed, gone], arm(), found, monitor=MONITOR)
+    changed.write_text("a,b\n1,2\n")
+    gone.unlink()
+    result = cs.replay_fleet([changed, gone], arm(), found, monitor=MONITOR)
+    assert list(result.failed) == [changed, gone]
+    # A log that is elsewhere now is still what it was.
+    assert [table(found, name)["log"].unique().to_pylist() for name in ("logs", "contacts")] == [
+        [str(gone)]
+    ] * 2
+
+
 def test_damage_is_told_also_of_logs_that_are_there(logs: list[Path], tmp_path: Path) -> None:
     cut = tmp_path / "cut.csv"
     cut.write_bytes(logs[0].read_bytes()[:-1000])

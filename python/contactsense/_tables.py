@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
@@ -17,3 +18,8 @@ def plain_table(title: str | None) -> Table:
         pad_edge=False,
         padding=(0, 1, 0, 0),
     )
+
+
+def number_text(value: float, digits: int) -> str:
+    """A number with so many decimals; a dash where it is not known."""
+    return f"{value:.{digits}f}" if np.isfinite(value) else "-"

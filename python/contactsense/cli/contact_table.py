@@ -6,7 +6,7 @@ import numpy as np
 from rich.table import Table
 from rich.text import Text
 
-from .._tables import plain_table
+from .._tables import number_text, plain_table
 from ..offline import Replay, ReplayedContact
 
 # Header, and whether the column is aligned to the right.
@@ -48,14 +48,10 @@ def _cells(contact: ReplayedContact) -> list[Text]:
         str(contact.id),
         f"{contact.start:.2f} {contact.end:.2f}",
         contact.link,
-        _number(100.0 * contact.link_probability, 0),
+        number_text(100.0 * contact.link_probability, 0),
         place,
-        _number(100.0 * contact.region_radius, 1),
+        number_text(100.0 * contact.region_radius, 1),
         "yes" if contact.located else "no",
-        _number(contact.peak_force, 1),
+        number_text(contact.peak_force, 1),
     ]
     return [Text(cell) for cell in cells]
-
-
-def _number(value: float, digits: int) -> str:
-    return f"{value:.{digits}f}" if np.isfinite(value) else "-"

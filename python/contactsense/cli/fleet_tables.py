@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-import numpy as np
 from rich.table import Table
 from rich.text import Text
 
-from .._tables import plain_table
+from .._tables import number_text, plain_table
 from ..fleet.summary import LinkSummary, RobotSummary
 
 
@@ -39,7 +38,7 @@ def link_table(links: Iterable[LinkSummary]) -> Table:
             str(link.contacts),
             f"{link.an_hour:.1f}",
             f"{100.0 * link.located:.0f}",
-            f"{link.peak_force:.1f}" if np.isfinite(link.peak_force) else "-",
+            number_text(link.peak_force, 1),
         )
         for link in links
     ]

@@ -21,6 +21,8 @@ from .monitor_options import MonitorOptions
 from .progress import progress_bar
 from .shared_options import with_shared_options
 
+_MINUTE = 60.0  # [s] of a log in a page that is written: about ten megabytes
+
 
 def register(parent: typer.Typer) -> None:
     """Adds `view` to the command line."""
@@ -69,6 +71,3 @@ def command(
                 time.sleep(1.0)
     finally:
         page.close()
-
-
-_MINUTE = 60.0  # [s] of a log in a page that is written: about ten megabytes

@@ -19,8 +19,8 @@ from urllib.parse import quote
 # Files under way are here, which readers of data sets pass over, until they are whole.
 _UNFINISHED = ".unfinished"
 LOGS = "logs"
-_OTHER_TABLES = ("contacts", "contact_ticks", "ticks")
-# Digits of the hash that tells apart logs of the same name: one pair in 10^5 of 10^9 such logs would collide.
+_TABLES = (LOGS, "contacts", "contact_ticks", "ticks")
+# Hexadecimal digits of a log's name: of a million logs, two share one with a chance of 3 in 10^8.
 _DIGITS = 16
 
 
@@ -53,16 +53,17 @@ class Part:
         unfinished = Path(tempfile.mkdtemp(dir=under_way))
         for name, table in tables.items():
             pyarrow.parquet.write_table(table, unfinished / name)
-        # A file of old settings must not be taken for the one of these.
-        (self.folder / LOGS / self._file).unlink(missing_ok=True)
-        for name in _OTHER_TABLES:
-            if name not in tables:
-                (self.folder / name / self._file).unlink(missing_ok=True)
+        self.remove()
         for name in tables:
             wanted = self.folder / name / self._file
             wanted.parent.mkdir(parents=True, exist_ok=True)
             (unfinished / name).replace(wanted)
         unfinished.rmdir()
+
+    def remove(self) -> None:
+        """Removes what there is of the log, from the table on that says it is complete."""
+        for name in _TABLES:
+            (self.folder / name / self._file).unlink(missing_ok=True)
 
     def damage(self, made_from: str) -> str | None:
         """Where the log is broken, or ""; None where there are no results of this log and these settings."""

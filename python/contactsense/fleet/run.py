@@ -44,6 +44,9 @@ class Run:
                         for log, outcome in outcomes:
                             self._outcomes[log] = outcome
                             self._tell()
+            for log in self._wanted():
+                if log.exists():  # what is there of it is of another state or other settings
+                    Part(settings.folder, settings.name, log).remove()
         finally:
             clear_unfinished(settings.folder, settings.name)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pinocchio as pin
 from numpy.typing import NDArray
 
 Rows = NDArray[np.float64]
@@ -50,18 +51,8 @@ def rotation_vectors(quaternions: Rows) -> Rows:
 
 def of_matrix(rotation: Rows) -> Rows:
     """`(4,)` of a rotation matrix `(3, 3)`, with a `w` that is not negative."""
-    # The eigenvector of the largest eigenvalue; Bar-Itzhack 2000.
-    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rotation
-    symmetric = np.array(
-        [
-            [xx - yy - zz, yx + xy, zx + xz, zy - yz],
-            [yx + xy, yy - xx - zz, zy + yz, xz - zx],
-            [zx + xz, zy + yz, zz - xx - yy, yx - xy],
-            [zy - yz, xz - zx, yx - xy, xx + yy + zz],
-        ]
-    )
-    found = np.linalg.eigh(symmetric)[1][:, -1]
-    return np.asarray(found if found[3] >= 0.0 else -found)
+    found: Rows = np.array(pin.Quaternion(np.asarray(rotation)).normalized().coeffs())
+    return found if found[3] >= 0.0 else -found
 
 
 def slerp(time: Rows, quaternions: Rows, even: Rows) -> Rows:

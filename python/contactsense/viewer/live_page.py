@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .log_page import FRAMES, LOOPBACK, place_camera
-from .moment import Moment, Touch
+from .moment import Moment, Touch, likelihood_of
+from .page import FRAMES, address_of, close_page, open_page
 from .slot import Slot
 from .stage import Stage
 
@@ -30,18 +30,13 @@ def main() -> None:
     slot = Slot(Path(path), robot)  # before the address is told: its file is then removed
     ended = threading.Event()
     threading.Thread(target=_end_with_stdin, args=(ended,), daemon=True).start()
-    told = sys.stdout
-    with redirect_stdout(sys.stderr):
-        import viser
-
-        server = viser.ViserServer(host=LOOPBACK, port=port, label="contactsense: live", verbose=False)
-        stage = Stage(server.scene, robot, robot.neutral())
-        place_camera(server.initial_camera, stage.reach)
-        text = server.gui.add_markdown("")
-        print(f"http://{LOOPBACK}:{server.get_port()}", file=told, flush=True)
-        contact_map = None if robot.floating_base else _core.ContactMap(robot)
+    server, stage = open_page("live", robot, robot.neutral(), port)
+    text = server.gui.add_markdown("")
+    print(address_of(server), flush=True)
+    contact_map = None if robot.floating_base else _core.ContactMap(robot)
+    with redirect_stdout(sys.stderr):  # nobody reads on
         _show(server, stage, text, slot, contact_map, ended)
-        server.stop()
+    close_page(server)
 
 
 def _end_with_stdin(ended: threading.Event) -> None:
@@ -68,7 +63,7 @@ def _show(
         places = _NOWHERE
         if contact_map is not None and len(touches) == 1:
             found = contact_map.evaluate(q, torque)
-            places = found.points, np.exp(found.log_posterior - np.max(found.log_posterior))
+            places = found.points, likelihood_of(found)
         with server.atomic():
             stage.show(Moment(q, touches, *places))
             text.content = _told(touches)

@@ -3,48 +3,35 @@
 from __future__ import annotations
 
 import os
-import sys
 import threading
 import time
 from collections.abc import Sequence
-from contextlib import redirect_stdout
 from html import escape
 from typing import Any
 
 import numpy as np
 
-from .._extras import require
+from .._pictures import JOINTS
+from .._tables import number_text
 from ..errors import InputError
 from ..offline import Replay, ReplayedContact
 from ..offline.whole import whole_file
 from .moment import ReplayMoments
-from .stage import Stage
+from .page import FRAMES, address_of, close_page, open_page
 
-LOOPBACK = "127.0.0.1"
-FRAMES = 30.0  # [1/s]
 # Points of a plot, which are more than its pixels.
 _POINTS = 1500
-_COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#8A8200")
 
 
 class LogPage:
     """A page in the browser, on this machine only, until it is closed."""
 
     def __init__(self, title: str, result: Replay, moments: ReplayMoments, port: int = 8080) -> None:
-        require("view", "viser")
-        import viser
-
         if not len(moments):
             raise InputError("log: has no rows to show")
         self._moments = moments
         self._time = result.ticks["time"] - result.ticks["time"][0]
-        # What it says of itself goes to stdout, which is for results.
-        with redirect_stdout(sys.stderr):
-            self._server = viser.ViserServer(
-                host=LOOPBACK, port=port, label=f"contactsense: {title}", verbose=False
-            )
-        self._stage = Stage(self._server.scene, result.robot, result.log.q[0])
-        place_camera(self._server.initial_camera, self._stage.reach)
+        self._server, self._stage = open_page(title, result.robot, result.log.q[0], port)
         self._lock = threading.Lock()
         self._playing = threading.Event()
         self._closed = threading.Event()
@@ -55,7 +42,7 @@ class LogPage:
     @property
     def address(self) -> str:
         """Where the page is."""
-        return f"http://{LOOPBACK}:{self._server.get_port()}"
+        return address_of(self._server)
 
     def show(self, seconds: float) -> None:
         """Shows the row at a time from the log's start."""
@@ -87,8 +74,7 @@ class LogPage:
     def close(self) -> None:
         """Ends the page."""
         self._closed.set()
-        with redirect_stdout(sys.stderr):
-            self._server.stop()
+        close_page(self._server)
 
     def _build(self, title: str, result: Replay) -> None:
         gui: Any = self._server.gui
@@ -130,21 +116,15 @@ def _add_torques(gui: Any, seconds: Any, result: Replay) -> None:
     for k in range(torques.shape[1]):
         # Six variables of a floating base have one joint.
         label = names[k] if len(names) == torques.shape[1] else str(k)
-        series.append(uplot.Series(label=label, stroke=_COLOURS[k % len(_COLOURS)], width=1))
+        series.append(uplot.Series(label=label, stroke=JOINTS[k % len(JOINTS)], width=1))
     gui.add_uplot(
         (seconds[::every].copy(), contact, *torques.T.copy()),
         tuple(series),
         title="External torque [Nm]; contacts shaded",
         scales={"x": uplot.Scale(time=False), "y": uplot.Scale(range=bounds)},
-        legend=uplot.Legend(show=torques.shape[1] <= len(_COLOURS)),
+        legend=uplot.Legend(show=torques.shape[1] <= len(JOINTS)),
         aspect=1.5,
     )
-
-
-def place_camera(camera: Any, reach: float) -> None:
-    """So that the whole robot is seen, from the front and above."""
-    camera.look_at = (0.0, 0.0, 0.4 * reach)
-    camera.position = (1.5 * reach, 1.1 * reach, 1.2 * reach)
 
 
 def _table(contacts: Sequence[ReplayedContact], start: float) -> str:
@@ -154,17 +134,13 @@ def _table(contacts: Sequence[ReplayedContact], start: float) -> str:
         (
             f"{contact.start - start:.2f}, {contact.end - start:.2f}",
             contact.link,
-            _number(100.0 * contact.link_probability, 0),
-            _number(100.0 * contact.region_radius, 1),
+            number_text(100.0 * contact.link_probability, 0),
+            number_text(100.0 * contact.region_radius, 1),
             "yes" if contact.located else "no",
-            _number(contact.peak_force, 1),
+            number_text(contact.peak_force, 1),
         )
         for contact in contacts
     ]
     cells = ("".join(f'<td style="padding:1px 8px">{escape(cell)}</td>' for cell in row) for row in rows)
     body = "".join(f"<tr>{row}</tr>" for row in cells)
     return f'<table style="font-size:12px">{body}</table>'
-
-
-def _number(value: float, digits: int) -> str:
-    return f"{value:.{digits}f}" if np.isfinite(value) else "-"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,9 +11,6 @@ from .. import _core
 from ..offline import Replay
 
 Rows = NDArray[np.float64]
-
-# Maps that are kept for instants that are looked at again.
-_KEPT = 200
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +60,6 @@ class ReplayMoments:
         rows = np.arange(len(result.ticks["time"]) + 1)
         # Contacts of row k are those from first[k] to first[k + 1].
         self._first = np.searchsorted(ticks["row"], rows)
-        self._heat: OrderedDict[int, tuple[Rows, Rows]] = OrderedDict()
 
     def __len__(self) -> int:
         return len(self._result.ticks["time"])
@@ -89,10 +84,10 @@ class ReplayMoments:
     def _places(self, row: int) -> tuple[Rows, Rows]:
         if self._map is None:
             return np.zeros((0, 3)), np.zeros(0)
-        if row not in self._heat:
-            found = self._map.evaluate(self._result.log.q[row], self._result.ticks["external_torque"][row])
-            share = np.exp(found.log_posterior - np.max(found.log_posterior, initial=-np.inf))
-            self._heat[row] = found.points, share
-            if len(self._heat) > _KEPT:
-                self._heat.popitem(last=False)
-        return self._heat[row]
+        found = self._map.evaluate(self._result.log.q[row], self._result.ticks["external_torque"][row])
+        return found.points, likelihood_of(found)
+
+
+def likelihood_of(found: _core.MapEstimate) -> Rows:
+    """Of each place of a map, as a share of the greatest."""
+    return np.exp(found.log_posterior - np.max(found.log_posterior, initial=-np.inf))

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
+from .._pictures import BODY, ESTIMATE, NAMED, UNSURE
+from ..log.quaternions import of_matrix
 from .moment import Moment, Touch
 
 Rows = NDArray[np.float64]
 
-_BODY, _TOUCHED = (201, 205, 210), (86, 180, 233)
-_FORCE, _UNSURE = (213, 94, 0), (230, 159, 0)
 _METRES_PER_NEWTON = 0.006
 _SHAFT, _HEAD, _HEAD_LENGTH = 0.006, 0.015, 0.03  # [m]
 _DOT = 0.012  # [m]
@@ -40,7 +40,7 @@ class Stage:
                 continue
             self._links[link] = scene.add_mesh_simple(
                 f"/robot/{link}", surface.vertices.astype(np.float32), surface.triangles.astype(np.uint32),
-                color=_BODY, side="double",
+                color=_rgb(BODY), side="double",
             )  # fmt: skip
             pose = robot.link_pose(q, link)
             points = surface.vertices @ pose[:3, :3].T + pose[:3, 3]
@@ -76,16 +76,17 @@ class Stage:
     def _move(self, q: Rows) -> None:
         for link, handle in self._links.items():
             pose = self._robot.link_pose(q, link)
-            handle.wxyz, handle.position = _quaternion(pose[:3, :3]), pose[:3, 3]
+            # viser has the scalar first.
+            handle.wxyz, handle.position = np.roll(of_matrix(pose[:3, :3]), 1), pose[:3, 3]
 
     def _colour(self, touched: set[str]) -> None:
         for link in touched ^ self._coloured:
             if link in self._links:
-                self._links[link].color = _TOUCHED if link in touched else _BODY
+                self._links[link].color = _rgb(NAMED if link in touched else BODY)
         self._coloured = touched
 
     def _draw(self, number: int, touch: Touch) -> None:
-        colour = _FORCE if touch.located else _UNSURE
+        colour = _rgb(ESTIMATE if touch.located else UNSURE)
         scene, name = self._scene, f"/contact {number}"
         self._drawn.append(scene.add_icosphere(f"{name}/point", _DOT, colour, position=touch.point))
         if np.isfinite(touch.region_radius) and touch.region_radius > 0.0:
@@ -106,9 +107,7 @@ class Stage:
             )  # fmt: skip
 
 
-def _quaternion(rotation: Rows) -> Rows:
-    """`(w, x, y, z)` of a rotation matrix."""
-    import pinocchio as pin
-
-    x, y, z, w = pin.Quaternion(rotation).coeffs()
-    return np.array([w, x, y, z])
+def _rgb(colour: str) -> tuple[int, int, int]:
+    """Of `#RRGGBB`."""
+    red, green, blue = bytes.fromhex(colour[1:])
+    return red, green, blue

@@ -63,7 +63,7 @@ impl BestForce {
         normal: &Vector3<f64>,
     ) -> BestForce {
         let bare = BestForce::without_friction(frame, target, point, normal);
-        BestForce::beside_friction(frame, target, force_model, point, normal).unwrap_or(bare)
+        bare.and_friction(frame, target, force_model, point, normal).unwrap_or(bare)
     }
 
     /// The same, but none where forces across the normal explain the torques without a push.
@@ -74,8 +74,25 @@ impl BestForce {
         point: &Vector3<f64>,
         normal: &Vector3<f64>,
     ) -> Option<BestForce> {
-        let bare = BestForce::without_friction(frame, target, point, normal);
-        let Some(deviation) = force_model.deviation_across(bare.normal) else { return Some(bare) };
+        BestForce::without_friction(frame, target, point, normal).and_friction(
+            frame,
+            target,
+            force_model,
+            point,
+            normal,
+        )
+    }
+
+    /// With the force across the normal that this force along it allows; none as above.
+    fn and_friction(
+        self,
+        frame: &Frame,
+        target: &LinkTarget,
+        force_model: ForceModel,
+        point: &Vector3<f64>,
+        normal: &Vector3<f64>,
+    ) -> Option<BestForce> {
+        let Some(deviation) = force_model.deviation_across(self.normal) else { return Some(self) };
         let directions = directions(normal);
         let (gram, products) = frame.responses(point, &directions, target);
         BestForce::with_friction(gram, &products, &directions, deviation)
