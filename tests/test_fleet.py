@@ -307,6 +307,13 @@ def test_wrong_arguments_are_named(more: dict[str, Any], message: str, tmp_path:
     assert not (tmp_path / "found").exists()
 
 
+def test_a_file_is_no_folder_for_a_data_set(logs: list[Path], tmp_path: Path) -> None:
+    (tmp_path / "found").write_text("mine")
+    with pytest.raises(cs.InputError, match="folder: cannot write to"):
+        cs.replay_fleet(logs[:1], arm(), tmp_path / "found", monitor=MONITOR)
+    assert (tmp_path / "found").read_text() == "mine"
+
+
 @pytest.mark.parametrize(
     ("more", "message"),
     [(["--engine", "local"], "out: --engine needs"), (["--workers", "2"], "engine: ")],

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, closing
 from pathlib import Path
 
+from ..errors import InputError
 from .dataset import Part, clear_unfinished
 from .engine import Engine
 from .local import local_engine
@@ -32,7 +33,10 @@ class Run:
     def all(self, engine: str, workers: int | None, address: str | None) -> None:
         """Replays all logs that are wanted, and those that fail once more after all others."""
         settings = self._settings
-        settings.folder.mkdir(parents=True, exist_ok=True)
+        try:
+            settings.folder.mkdir(parents=True, exist_ok=True)
+        except OSError as cause:
+            raise InputError(f"folder: cannot write to '{settings.folder}': {cause.strerror}") from cause
         clear_unfinished(settings.folder, settings.name)
         self._tell()
         try:
