@@ -3,17 +3,36 @@
 from __future__ import annotations
 
 import re
+import sys
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from latex2mathml.converter import convert
+from sphinx.util import logging
 
 import contactsense
 
 project = "contactsense"
 author = "The contactsense authors"
 version = release = contactsense.__version__
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
+sys.path.append(str(Path(__file__).parent / "_extensions"))
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.viewcode",
+    "stub_types",
+]
 root_doc = "site"
 exclude_patterns = ["build"]
 html_theme = "furo"
 html_title = f"contactsense {version}"
+
+# Browsers typeset MathML by themselves: the pages need no network.
+html_math_renderer = "mathml"
+html_static_path = ["_static"]
+html_css_files = ["mathematics.css"]
 
 # Sections are linked by their names, as on GitHub.
 myst_heading_anchors = 3
@@ -44,7 +63,19 @@ def _docstring(app: object, what: str, name: str, item: object, options: object,
     ]
 
 
-def setup(app: object) -> None:
+def _equation(display: str) -> Any:
+    def write(translator: Any, node: nodes.Element) -> None:
+        written = convert(node.astext(), display=display)
+        if "\\" in written:  # a command that it does not know
+            logging.getLogger(__name__).warning("cannot typeset %s", node.astext(), location=node)
+        translator.body.append(written)
+        raise nodes.SkipNode
+
+    return write
+
+
+def setup(app: Any) -> None:
     """Called by Sphinx."""
+    app.add_html_math_renderer("mathml", (_equation("inline"), None), (_equation("block"), None))
     # Before napoleon, which makes reStructuredText of the sections.
-    app.connect("autodoc-process-docstring", _docstring, priority=1)  # type: ignore[attr-defined]
+    app.connect("autodoc-process-docstring", _docstring, priority=1)

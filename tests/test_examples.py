@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 ROOT = Path(__file__).parents[1]
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+# Of libraries that only a robot's own distribution has.
+STAND_INS = ROOT / "tests" / "stand_ins"
 SNIPPET = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\((?!https?://)([^)#]+)(?:#[^)]*)?\)")
 SECTION_LINK = re.compile(r"\]\((?!https?://)([^)#]*)#([^)]+)\)")
@@ -68,7 +72,11 @@ FINDINGS = {
 def run(*arguments: str, folder: Path) -> str:
     """Runs Python with warnings as errors, in an empty folder; what it prints."""
     command = [sys.executable, "-W", "error", *arguments]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120, check=False)
+    paths = [str(STAND_INS), *filter(None, [os.environ.get("PYTHONPATH")])]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
+    done = subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120, check=False
+    )
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""
     return done.stdout
@@ -108,9 +116,18 @@ def test_readme_snippet_finds_the_contact(tmp_path: Path) -> None:
     ids=lambda page: page.stem,
 )
 def test_page_snippets_run(page: Path, tmp_path: Path) -> None:
-    if page.stem in ("simulation", "obstacle_contacts", "particle_filter"):
+    code = "\n".join(SNIPPET.findall(page.read_text(encoding="utf-8")))
+    if re.search(r"\bsim\b", code):
         pytest.importorskip("mujoco")
-    run("-c", "\n".join(SNIPPET.findall(page.read_text(encoding="utf-8"))), folder=tmp_path)
+    run("-c", code, folder=tmp_path)
+
+
+def test_the_node_of_ros_publishes_the_force(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "how_to" / "ros2.md").read_text(encoding="utf-8")
+    printed = run("-c", "\n".join(SNIPPET.findall(page)), folder=tmp_path)
+    assert re.search(r"^info: contact at .*\n4[5-9]\d messages published\nlast force \[3[789]\.", printed)
+    force = [float(number) for number in re.findall(r"-?\d+\.", printed.rsplit("force", 1)[1])]
+    assert np.abs(np.subtract(force, [38.0, 0.0, 13.0])).max() < 3.0
 
 
 @pytest.mark.parametrize("page", [*PAGES, ROOT / "CONTRIBUTING.md"], ids=lambda page: page.name)

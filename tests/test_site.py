@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -46,3 +47,17 @@ def test_every_page_is_reached(site: Path) -> None:
     assert [
         page for page in pages if page.name != "site.html" and f'href="{page.as_posix()}"' not in contents
     ] == []
+
+
+def test_compiled_classes_have_types_in_the_reference(site: Path) -> None:
+    page = re.sub(r"<[^>]+>", "", (site / "reference" / "monitor.html").read_text(encoding="utf-8"))
+    assert "dt (float) – Time between two calls [s]." in page
+    assert "calibration (Calibration | None)" in page
+    assert re.search(r"propose_payload\(.*?Return type:\s*PayloadProposal \| None", page, re.DOTALL)
+    assert re.search(r"Thresholds on the torques, .*?Type: NDArray\[float64\]", page, re.DOTALL)
+
+
+def test_equations_are_typeset_without_a_network(site: Path) -> None:
+    page = (site / "noise.html").read_text(encoding="utf-8")
+    assert page.count('<math xmlns="http://www.w3.org/1998/Math/MathML" display="block">') == 2
+    assert '<script src="http' not in page
