@@ -88,7 +88,17 @@ def test_every_example_has_findings() -> None:
 
 def test_the_page_of_examples_lists_all() -> None:
     page = (ROOT / "docs" / "examples.md").read_text(encoding="utf-8")
-    assert sorted(re.findall(r"^\| \[(\w+\.py)\]", page, re.MULTILINE)) == sorted(FINDINGS)
+    notebooks = [path.name for path in (ROOT / "examples").glob("*.ipynb")]
+    listed = re.findall(r"^\| \[(\w+\.(?:py|ipynb))\]", page, re.MULTILINE)
+    assert sorted(listed) == sorted([*FINDINGS, *notebooks])
+
+
+def test_the_notebook_runs_and_prints_what_is_saved() -> None:
+    pytest.importorskip("mujoco")
+    # In a process of its own, whose warnings are not ours.
+    command = [sys.executable, "-m", "tools.notebook", "--check"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 0, done.stderr
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.name)
