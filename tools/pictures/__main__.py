@@ -7,11 +7,15 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from . import pages, tutorials
+from . import pages, studies, tutorials
 
 FOLDER = Path(__file__).parents[2] / "docs" / "pictures"
 # Each function writes the picture of its name to a file.
-PICTURES: dict[str, Callable[[Path], None]] = {**pages.PICTURES, **tutorials.PICTURES}
+PICTURES: dict[str, Callable[[Path], None]] = {
+    **studies.PICTURES,
+    **pages.PICTURES,
+    **tutorials.PICTURES,
+}
 
 
 def main() -> None:

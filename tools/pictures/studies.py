@@ -1,0 +1,27 @@
+"""Pictures that commands of the package and its studies draw."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+_CONTACTSENSE = (sys.executable, "-m", "contactsense.cli")
+
+
+def demo(path: Path) -> None:
+    """The demonstration of an arm."""
+    subprocess.run([*_CONTACTSENSE, "demo", "--out", path], check=True, stdout=subprocess.DEVNULL)
+
+
+def identifiability(path: Path) -> None:
+    """How exactly torques locate a contact, on an arm and a humanoid."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = [*_CONTACTSENSE, "study", "identifiability", "--png", folder]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        path.write_bytes((Path(folder) / path.name).read_bytes())
+
+
+PICTURES: dict[str, Callable[[Path], None]] = {"demo": demo, "identifiability": identifiability}
