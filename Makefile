@@ -35,12 +35,13 @@ rust-test: toolchain
 	cargo test -p contactsense --quiet --features serde --test suite plain_data
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --release --quiet
 
+# On all cores; the tests of a file stay together, since they share what is set up once.
 python-test: studies
-	$(BIN)/python -m pytest -q --durations=25
+	$(BIN)/python -m pytest -q --durations=25 -n auto --dist loadfile
 
 # Tests of robots and logs that are not part of the project, in CONTACTSENSE_SHARED or ../shared.
 shared-test: studies
-	$(BIN)/python -m pytest -q --durations=10 -m shared
+	$(BIN)/python -m pytest -q --durations=10 -n auto --dist loadfile -m shared
 
 bench: GROUP := bench
 bench: install

@@ -9,6 +9,7 @@ mod arrays;
 mod by_name;
 mod calibration;
 mod calibration_parts;
+mod candidate;
 mod columns;
 mod compensator;
 mod cone;
@@ -79,7 +80,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<isolator::PyContactIsolator>()?;
     module.add_class::<isolation::PyIsolation>()?;
     module.add_class::<contact::PyContact>()?;
-    module.add_class::<contact::PyCandidate>()?;
+    module.add_class::<candidate::PyCandidate>()?;
     module.add_class::<monitor::PyContactMonitor>()?;
     module.add_class::<report::PyContactReport>()?;
     module.add_class::<particle::PyContactParticleFilter>()?;

@@ -11,7 +11,8 @@ use serde::Serialize;
 
 use crate::calibration::PyCalibration;
 use crate::calibration_parts::{PyBodyInertia, PyJointFriction, PyPayload};
-use crate::contact::{PyCandidate, PyContact};
+use crate::candidate::PyCandidate;
+use crate::contact::PyContact;
 use crate::contact_map::PyMapEstimate;
 use crate::diagnosis::PyFinding;
 use crate::errors::{input, refused};

@@ -342,11 +342,9 @@ impl SurfacePosterior {
 
     /// The pieces that are divided next.
     fn choose_pieces(&mut self) -> Stage {
-        let best = self.best_leaf().filter(|_| self.level < MOST_LEVELS);
-        let Some(best) = best else { return self.finish() };
+        let Some(best) = self.best_leaf().filter(|_| self.level < MOST_LEVELS) else { return self.finish() };
         let force = self.leaves[best].force;
-        let newest = self.newest().stated().iter().copied();
-        let noise = newest.fold(f64::INFINITY, f64::min);
+        let noise = self.newest().stated().iter().copied().fold(f64::INFINITY, f64::min);
         if self.effective > ENOUGH || CURVED * self.edge * force < FINE * noise {
             return self.finish();
         }
