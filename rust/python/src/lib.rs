@@ -43,6 +43,7 @@ mod robot_vectors;
 mod sensor;
 mod surface;
 mod tool_load;
+mod unpickle;
 mod urdf;
 
 // Arguments are copied out of NumPy arrays that another thread may write to; only the GIL keeps the two apart.
@@ -54,7 +55,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     errors::register(module)?;
     module.add_function(wrap_pyfunction!(urdf::_checked_urdf, module)?)?;
     module.add_function(wrap_pyfunction!(urdf::_robot_from_urdf, module)?)?;
-    module.add_function(wrap_pyfunction!(pickle::_restore, module)?)?;
+    module.add_function(wrap_pyfunction!(unpickle::_restore, module)?)?;
     module.add_function(wrap_pyfunction!(cone::_best_cone_forces, module)?)?;
     module.add_function(wrap_pyfunction!(diagnosis::diagnose, module)?)?;
     module.add_class::<robot::PyRobot>()?;

@@ -31,6 +31,16 @@ impl Whitening {
         }
     }
 
+    /// Of torques that are independent of each other, by their standard deviations (Nm).
+    pub fn of_deviations(deviations: &[f64]) -> Self {
+        let mut whitening = Whitening::new(deviations.len());
+        whitening.advance(|i, row| {
+            row.fill(0.0);
+            row[i] = deviations[i] * deviations[i];
+        });
+        whitening
+    }
+
     /// A tick's work on the factor of a covariance of which `covariance(i, row)` writes row `i` up to the diagonal; the first
     /// time, all of it. Its diagonal must be positive; a pivot that rounding makes negative is taken for a small share of
     /// its diagonal entry. True where the factor is complete.

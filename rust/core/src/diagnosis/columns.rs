@@ -2,8 +2,8 @@
 
 use nalgebra::DMatrix;
 
-use super::evidence::DELAYS;
 use super::motion::Motion;
+use super::terms::DELAYS;
 use crate::calibration::rows::{Filter, Row};
 use crate::robot::{JointKind, Kinematics, Robot};
 

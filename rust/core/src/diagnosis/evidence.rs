@@ -6,27 +6,13 @@ use super::columns::{delayed, gravity_columns};
 use super::motion::Motion;
 use super::slow_rows::slow_rows;
 use super::target::Target;
+use super::terms::{Parts, OWN, TERMS};
 use crate::calibration::rows::{rows, Filter, Row, Term};
 use crate::calibration::Log;
-use crate::calibration::Reversal;
 use crate::robot::{Robot, PARAMETERS};
-
-/// Terms of a joint's own torque that a fault may need, in the order of their unknowns.
-pub(super) const OWN: [Term; 4] = [Term::Bias, COULOMB, Term::Viscous, Term::Armature];
-/// What rows are asked for: these, and the measured torque.
-pub(super) const TERMS: [Term; 5] = [Term::Bias, COULOMB, Term::Viscous, Term::Armature, Term::Torque];
-/// Coulomb friction, which turns round with the velocity.
-pub(super) const COULOMB: Term = Term::Coulomb(Reversal::Velocity(FRICTION_VELOCITY));
-
-/// Delays of the torque that have a column of their own (s); between two of them columns are interpolated.
-pub(super) const DELAYS: [f64; 16] =
-    [-0.06, -0.05, -0.04, -0.03, -0.02, -0.01, 0.0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.08, 0.1, 0.12];
 
 /// Of the low-pass (1/s): slow enough that noise of velocities does not matter, fast enough for the motion of arms.
 pub(super) const GAIN: f64 = 8.0;
-
-/// Velocity at which Coulomb friction has 76 % of its torque (rad/s; m/s).
-const FRICTION_VELOCITY: f64 = 0.03;
 
 /// Between rows that are kept (s): a few for each time constant of the low-pass.
 const SPACING: f64 = 0.025;
@@ -42,30 +28,6 @@ const MOST_POSES: f64 = 80.0;
 
 /// Poses of which no joint's differs by as much (rad; m) say the same.
 const SAME_POSE: f64 = 0.05;
-
-/// The parts of a target: torques, the model's torque, gravity's along each axis, delayed torques.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Parts {
-    nv: usize,
-}
-
-impl Parts {
-    pub fn torque(self, joint: usize) -> usize {
-        joint
-    }
-    pub fn model(self) -> usize {
-        self.nv
-    }
-    pub fn gravity(self, axis: usize) -> usize {
-        self.nv + 1 + axis
-    }
-    pub fn delayed(self, index: usize) -> usize {
-        self.nv + 4 + index
-    }
-    pub fn len(self) -> usize {
-        self.nv + 4 + DELAYS.len()
-    }
-}
 
 /// Sums of products over the rows of one joint.
 #[derive(Debug, Clone)]

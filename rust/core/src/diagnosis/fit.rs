@@ -2,9 +2,10 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::evidence::{Evidence, OWN};
+use super::evidence::Evidence;
 use super::prior::Prior;
 use super::target::Target;
+use super::terms::OWN;
 
 /// Rounds in which solution and noise are estimated by turns.
 const ROUNDS: usize = 5;

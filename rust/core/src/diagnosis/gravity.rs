@@ -16,10 +16,10 @@ impl Trial<'_> {
         let evidence = self.evidence;
         let cost = 2.0 * PER_NUMBER + if evidence.moving { 0.0 } else { AT_REST };
         let known = self.robot.gravity;
-        let plain = Target::plain(evidence);
+        let plain = Target::plain(evidence.parts);
         let mut found = vec![];
         if known.norm() > 1.0 {
-            let none = plain.clone().with_gravity_change(evidence, &[-known.x, -known.y, -known.z]);
+            let none = plain.clone().with_gravity_change(evidence.parts, &[-known.x, -known.y, -known.z]);
             found.extend(self.explained(Fault::GravityFree, none, self.prior, 0.0));
         }
         let size = if known.norm() > 1.0 { known.norm() } else { EARTH };
@@ -34,7 +34,7 @@ impl Trial<'_> {
             }
             let turned = wanted * (size / wanted.norm());
             let change = [turned.x - known.x, turned.y - known.y, turned.z - known.z];
-            let target = plain.clone().with_gravity_change(evidence, &change);
+            let target = plain.clone().with_gravity_change(evidence.parts, &change);
             let fault = Fault::Gravity([turned.x, turned.y, turned.z]);
             let Some(explained) = self.explained(fault, target.clone(), self.prior, cost) else {
                 break;

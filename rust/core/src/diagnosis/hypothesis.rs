@@ -1,10 +1,10 @@
 //! What may be wrong with torques or model, each as a target and a prior.
 
 use super::evidence::Evidence;
-use super::evidence::COULOMB;
 use super::fit::{fit, Fit};
 use super::prior::{Prior, Reference};
 use super::target::Target;
+use super::terms::COULOMB;
 use crate::calibration::rows::Term;
 use crate::robot::Robot;
 
@@ -98,7 +98,7 @@ impl Trial<'_> {
 
     /// What a log without fault looks like.
     pub fn faultless(&self) -> Option<Fit> {
-        fit(self.evidence, &Target::plain(self.evidence), self.prior)
+        fit(self.evidence, &Target::plain(self.evidence.parts), self.prior)
     }
 
     /// All faults, the likeliest first.
@@ -115,7 +115,12 @@ impl Trial<'_> {
         found.extend(self.permuted());
         for body in self.tips() {
             let prior = self.prior.clone().loaded(self.reference, body);
-            found.extend(self.explained(Fault::Load(body), Target::plain(self.evidence), &prior, PER_CHOICE));
+            found.extend(self.explained(
+                Fault::Load(body),
+                Target::plain(self.evidence.parts),
+                &prior,
+                PER_CHOICE,
+            ));
         }
         for own in [OwnFault::Armature, OwnFault::Friction, OwnFault::Bias] {
             if own == OwnFault::Armature && !self.evidence.moving {
@@ -134,8 +139,8 @@ impl Trial<'_> {
     fn signs(&self) -> Vec<Explained> {
         let nv = self.evidence.nv;
         let flipped = |joints: &[usize]| {
-            joints.iter().fold(Target::plain(self.evidence), |target, joint| {
-                target.scaled(self.evidence, *joint, -1.0)
+            joints.iter().fold(Target::plain(self.evidence.parts), |target, joint| {
+                target.scaled(self.evidence.parts, *joint, -1.0)
             })
         };
         let choice = PER_CHOICE * (nv as f64).ln();
@@ -167,6 +172,6 @@ impl Trial<'_> {
         let prior = joints
             .iter()
             .fold(self.prior.clone(), |prior, joint| prior.widened(self.reference, *joint, own.terms()));
-        self.explained(Fault::Own(own, joints), Target::plain(self.evidence), &prior, cost)
+        self.explained(Fault::Own(own, joints), Target::plain(self.evidence.parts), &prior, cost)
     }
 }

@@ -22,6 +22,7 @@ mod search;
 mod sensor_offset;
 mod slow_rows;
 mod target;
+mod terms;
 mod time_step;
 mod torque_delay;
 mod units;

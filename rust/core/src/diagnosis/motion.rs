@@ -78,7 +78,7 @@ impl Motion {
         for (row, out) in tau.chunks_exact(width.max(1)).zip(motion.tau.chunks_exact_mut(nv.max(1))) {
             spread_torque(row, out);
         }
-        let (scale, agreement) = time_scale(&motion, time);
+        let (scale, agreement) = time_scale(nv, &motion.angle, &motion.v, time);
         motion.consecutive = agreement > CONSECUTIVE && (time.is_some() || scale > 0.0);
         motion.time = match time {
             Some(time) => time.to_vec(),
@@ -101,17 +101,7 @@ impl Motion {
         if q.len() != n * robot.nq() || time.is_some_and(|time| time.len() != n) {
             return 1.0;
         }
-        let motion = Motion {
-            time: vec![],
-            q: vec![],
-            angle: angles(robot, q, n),
-            v: v.to_vec(),
-            tau: vec![],
-            nv,
-            consecutive: false,
-            retimed: false,
-        };
-        time_scale(&motion, time).0
+        time_scale(nv, &angles(robot, q, n), v, time).0
     }
 
     /// Means over so many rows that they are [`AVERAGED_STEP`] apart.

@@ -94,7 +94,7 @@ fn likelihood(robot: &Robot, motion: &Motion, order: &[usize]) -> Option<(f64, f
         return None;
     }
     let reference = Reference::new(robot, &evidence, &poses(robot, &motion));
-    let fit = fit(&evidence, &Target::plain(&evidence), &Prior::normal(robot, &reference))?;
+    let fit = fit(&evidence, &Target::plain(evidence.parts), &Prior::normal(robot, &reference))?;
     let share = |k: usize| fit.sigma[k] / evidence.square(k, evidence.parts.torque(k)).sqrt().max(1e-9);
     let worst =
         (0..motion.nv).filter(|k| fit.sigma[*k] > 2.0 * evidence.floor[*k]).map(share).fold(0.0, f64::max);

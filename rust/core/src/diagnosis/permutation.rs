@@ -3,9 +3,9 @@
 use nalgebra::DMatrix;
 
 use super::assignment::assign;
-use super::evidence::OWN;
 use super::hypothesis::{Explained, Fault, Trial, PER_CHOICE};
 use super::target::Target;
+use super::terms::OWN;
 
 impl Trial<'_> {
     /// Torques in another order: the assignment under which each fits its joint best.
@@ -48,7 +48,7 @@ impl Trial<'_> {
         let order = assign(&cost);
         let moved = order.iter().enumerate().filter(|(k, column)| k != *column).count();
         let choices: f64 = (0..moved).map(|k| ((nv - k) as f64).ln()).sum();
-        let target = Target::reordered(evidence, &order);
+        let target = Target::reordered(evidence.parts, &order);
         (moved > 0)
             .then(|| self.explained(Fault::Permuted(order), target, self.prior, PER_CHOICE * choices))?
     }

@@ -2,7 +2,8 @@
 
 use nalgebra::{SMatrix, Vector3};
 
-use super::evidence::{Evidence, OWN};
+use super::evidence::Evidence;
+use super::terms::OWN;
 use crate::calibration::rows::Term;
 use crate::robot::inertial_parameters::{of_body, of_inertia, to_inertia};
 use crate::robot::{Kinematics, Robot, PARAMETERS};

@@ -2,11 +2,12 @@
 
 use nalgebra::DVector;
 
-use super::evidence::{Evidence, COULOMB, OWN};
+use super::evidence::Evidence;
 use super::finding::{FaultCode, Finding};
 use super::fit::Fit;
 use super::hypothesis::{Explained, Fault, OwnFault};
 use super::prior::Reference;
+use super::terms::{COULOMB, OWN};
 use crate::calibration::rows::Term;
 use crate::robot::{Robot, PARAMETERS};
 use crate::spatial::Pose;

@@ -44,8 +44,9 @@ impl Trial<'_> {
             }
             let settled = (next - factor).abs() < 1e-3 * next.abs();
             factor = next;
-            let target =
-                joints.iter().fold(Target::plain(evidence), |target, k| target.scaled(evidence, *k, factor));
+            let target = joints
+                .iter()
+                .fold(Target::plain(evidence.parts), |target, k| target.scaled(evidence.parts, *k, factor));
             let explained = self.explained(Fault::Scale(joint, factor), target, self.prior, cost)?;
             x = explained.fit.x.clone();
             sigma = explained.fit.sigma.iter().zip(&explained.target.factor).map(|(s, f)| s / f).collect();
@@ -61,9 +62,9 @@ impl Trial<'_> {
         while step > FINEST {
             let Fault::Scale(_, middle) = best.as_ref()?.fault else { break };
             for factor in [middle * (1.0 + step), middle / (1.0 + step)] {
-                let target = joints
-                    .iter()
-                    .fold(Target::plain(evidence), |target, k| target.scaled(evidence, *k, factor));
+                let target = joints.iter().fold(Target::plain(evidence.parts), |target, k| {
+                    target.scaled(evidence.parts, *k, factor)
+                });
                 let explained = self.explained(Fault::Scale(joint, factor), target, self.prior, cost)?;
                 if best.as_ref().is_none_or(|best| explained.score > best.score) {
                     best = Some(explained);

@@ -140,7 +140,7 @@ fn usable(state: &State, left_out: &[bool]) -> Evidence {
 fn leave_outliers_out(evidence: &mut Evidence, best: &Explained, plain: &Fit) -> bool {
     let (target, x) = match best.score > plain.score {
         true => (best.target.clone(), &best.fit.x),
-        false => (Target::plain(evidence), &plain.x),
+        false => (Target::plain(evidence.parts), &plain.x),
     };
     let left: DMatrix<f64> = evidence.left_over(&target, x);
     let limits: Vec<f64> = (0..evidence.nv)

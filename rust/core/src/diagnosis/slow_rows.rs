@@ -2,8 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::evidence::TERMS;
 use super::motion::Motion;
+use super::terms::TERMS;
 use crate::calibration::rows::{Row, Term};
 use crate::robot::{Kinematics, MomentumRegressor, Robot};
 

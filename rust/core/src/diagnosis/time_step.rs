@@ -1,14 +1,11 @@
 //! The time between rows from positions and velocities.
 
-use super::motion::Motion;
-
 /// Rows over which positions are compared with velocities: noise of single rows then matters little.
 const STRIDES: usize = 400;
 
-/// How many units of time a row takes (of `time`, else of one a row), and the share of the motion that this explains.
-pub(super) fn time_scale(motion: &Motion, time: Option<&[f64]>) -> (f64, f64) {
-    let nv = motion.nv;
-    let n = motion.v.len() / nv.max(1);
+/// Of angles and velocities `(n, nv)`: how many units of time a row takes (of `time`, else of one a row), and the share of the motion that this explains.
+pub(super) fn time_scale(nv: usize, angle: &[f64], v: &[f64], time: Option<&[f64]>) -> (f64, f64) {
+    let n = v.len() / nv.max(1);
     let stride = (n / STRIDES).max(1);
     if n < 3 {
         return (0.0, 0.0);
@@ -20,10 +17,10 @@ pub(super) fn time_scale(motion: &Motion, time: Option<&[f64]>) -> (f64, f64) {
             let way: f64 = (start..start + stride)
                 .map(|row| {
                     let step = time.map_or(1.0, |time| time[row + 1] - time[row]);
-                    0.5 * step * (motion.v[row * nv + k] + motion.v[(row + 1) * nv + k])
+                    0.5 * step * (v[row * nv + k] + v[(row + 1) * nv + k])
                 })
                 .sum();
-            of_joint.push((motion.angle[(start + stride) * nv + k] - motion.angle[start * nv + k], way));
+            of_joint.push((angle[(start + stride) * nv + k] - angle[start * nv + k], way));
         }
         let size = (of_joint.iter().map(|pair| pair.0 * pair.0).sum::<f64>() / of_joint.len() as f64).sqrt();
         if size > 1e-9 {

@@ -1,8 +1,8 @@
 //! Torques late, or early, against positions and velocities.
 
-use super::evidence::DELAYS;
 use super::hypothesis::{Explained, Fault, Trial, PER_NUMBER};
 use super::target::Target;
+use super::terms::DELAYS;
 
 impl Trial<'_> {
     /// The delay of all torques that explains them best.
@@ -11,7 +11,7 @@ impl Trial<'_> {
             return None;
         }
         let at = |delay: f64| {
-            let target = Target::plain(self.evidence).later(self.evidence, delay, None);
+            let target = Target::plain(self.evidence.parts).later(self.evidence.parts, delay, None);
             self.explained(Fault::Delay(delay), target, self.prior, PER_NUMBER)
         };
         let coarse: Vec<Explained> = DELAYS.iter().filter_map(|delay| at(*delay)).collect();

@@ -5,13 +5,12 @@ use std::sync::Arc;
 use super::bias::BiasTracker;
 use super::clock::SampleClock;
 use super::limits::JointLimits;
-use super::options::MonitorOptions;
+use super::options::{of_observer, MonitorOptions};
 use super::recent_motion::RecentMotion;
 use super::report::ContactReport;
+use super::rest_readings::RestReadings;
 use super::sensing::Sensing;
-use super::settings::{of_observer, scale_of};
 use super::source::{signal_of, Source};
-use super::tare::RestReadings;
 use crate::detection::{ContactTest, Detector, FreeDirections, Load, ReleaseDetector, Whitening};
 use crate::error::{Error, Result};
 use crate::isolation::ContactIsolator;
@@ -144,7 +143,7 @@ impl ContactMonitor {
             )?,
             observer,
             test,
-            scale: scale_of(&threshold),
+            scale: Whitening::of_deviations(&threshold),
             limits: JointLimits::new(&robot),
             threshold,
             deviation: noise.at_rest().to_vec(),

@@ -3,7 +3,7 @@
 use super::contact_monitor::ContactMonitor;
 use super::report::ContactReport;
 use super::source::Source;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::observer::Step;
 use crate::sample::ExternalSample;
 
@@ -58,5 +58,38 @@ impl ContactMonitor {
         self.check_source(Source::External)?;
         self.check_readings(sample.wrenches)?;
         sample.check(&self.robot)
+    }
+
+    /// Whether torques of a source can be taken in.
+    pub(super) fn check_source(&self, source: Source) -> Result<()> {
+        let external = self.options.calibration.as_ref().map(|calibration| calibration.torque_is_external);
+        let problem = match (source, self.source) {
+            (Source::Motors, Some(Source::External)) => {
+                "the monitor runs on external torques, of update_external; call reset() before torques of the motors"
+            }
+            (Source::External, Some(Source::Motors)) => {
+                "the monitor runs on torques of the motors, of update; call reset() before external torques"
+            }
+            _ if source == Source::Motors && external == Some(true) => {
+                "the calibration is of external torques; use update_external, or calibrate with torques of the motors"
+            }
+            _ if source == Source::External && external == Some(false) => {
+                "the calibration is of torques of the motors; use update, or calibrate with external torques"
+            }
+            _ => return Ok(()),
+        };
+        Err(Error::input(source.argument(), problem))
+    }
+
+    /// The next torques may come from another source.
+    pub(super) fn forget_source(&mut self) {
+        if self.source.take() != Some(Source::External) {
+            return;
+        }
+        let gain = self.observer.gain();
+        self.free.set_gain(|k| gain[k]);
+        if let Some(sensing) = &mut self.sensing {
+            sensing.follow_gain(gain);
+        }
     }
 }

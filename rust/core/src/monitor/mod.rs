@@ -12,6 +12,7 @@ mod payload_fit;
 mod payload_proposal;
 mod recent_motion;
 mod report;
+mod rest_readings;
 mod sensing;
 mod settings;
 mod source;

@@ -219,3 +219,11 @@ pub(super) fn check_time_constant(time: f64) -> Result<()> {
     }
     Err(Error::input("bias_time_constant", format!("must be positive and finite [s], not {time}")))
 }
+
+/// An error of the observer's gain, by its name here.
+pub(super) fn of_observer(error: Error) -> Error {
+    match error {
+        Error::Input { argument, problem } if argument == "gain" => Error::input("observer_gain", problem),
+        other => other,
+    }
+}

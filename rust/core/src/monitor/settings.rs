@@ -2,6 +2,7 @@
 
 use nalgebra::Vector6;
 
+use super::options::of_observer;
 use super::source::Source;
 use super::{ContactMonitor, MonitorOptions};
 use crate::detection::{check_wrench_threshold, Whitening};
@@ -29,7 +30,7 @@ impl ContactMonitor {
             self.report.significance = None;
         }
         self.detector.set_threshold(self.threshold.clone());
-        self.scale = scale_of(&self.threshold);
+        self.scale = Whitening::of_deviations(&self.threshold);
         Ok(())
     }
 
@@ -115,23 +116,5 @@ impl ContactMonitor {
             sensing.follow_without_lag();
         }
         Ok(())
-    }
-}
-
-/// Thresholds `(nv,)` as a covariance.
-pub(super) fn scale_of(threshold: &[f64]) -> Whitening {
-    let mut scale = Whitening::new(threshold.len());
-    scale.advance(|i, row| {
-        row.fill(0.0);
-        row[i] = threshold[i] * threshold[i];
-    });
-    scale
-}
-
-/// An error of the observer's gain, by its name here.
-pub(super) fn of_observer(error: Error) -> Error {
-    match error {
-        Error::Input { argument, problem } if argument == "gain" => Error::input("observer_gain", problem),
-        other => other,
     }
 }

@@ -3,81 +3,12 @@
 use nalgebra::Vector6;
 
 use super::contact_monitor::ContactMonitor;
-use super::sensing::Sensing;
 use super::source::Source;
 use crate::detection::ContactTest;
 use crate::error::{Error, Result};
-use crate::robot::Kinematics;
 
 /// Observers have forgotten a start after so many time constants.
 const SETTLED: f64 = 5.0;
-/// What is read is averaged over this time (s): longer than noise, shorter than a person waits.
-const MEAN_TIME: f64 = 0.25;
-
-/// Means of what is read while nothing touches.
-#[derive(Debug, Clone)]
-pub(super) struct RestReadings {
-    /// Since the start or the end of a contact, gaps left out (s).
-    since: f64,
-    /// The external torque, bias included `(nv,)`.
-    torque: Vec<f64>,
-    /// By sensor: the external wrench as it adds to a reading, and for how long it was read (s).
-    wrenches: Vec<(Vector6<f64>, f64)>,
-    /// Whether there was no contact since the start.
-    free: bool,
-}
-
-impl RestReadings {
-    pub fn new(nv: usize, sensors: usize) -> Self {
-        RestReadings {
-            since: 0.0,
-            torque: vec![0.0; nv],
-            wrenches: vec![(Vector6::zeros(), 0.0); sensors],
-            free: false,
-        }
-    }
-
-    /// Takes in a step of `length` (s) without contact; `settling` (s) after the start the torque is known.
-    #[inline]
-    pub fn update(
-        &mut self,
-        torque: &[f64],
-        sensing: Option<(&Sensing, &Kinematics)>,
-        settling: f64,
-        length: f64,
-    ) {
-        let share = |since: f64| length / (since - settling).min(MEAN_TIME).max(length);
-        self.since += length;
-        if self.since > settling {
-            let share = share(self.since);
-            self.torque.iter_mut().zip(torque).for_each(|(mean, torque)| *mean += share * (torque - *mean));
-        }
-        let Some((sensing, kinematics)) = sensing else { return };
-        for (sensor, (mean, since)) in self.wrenches.iter_mut().enumerate() {
-            let Some(reading) = sensing.external_reading(kinematics, sensor) else {
-                *since = 0.0;
-                continue;
-            };
-            *since += length;
-            if *since > settling {
-                *mean += (reading - *mean) * share(*since);
-            }
-        }
-    }
-
-    /// Forgets all steps.
-    pub fn reset(&mut self) {
-        self.restart();
-        self.free = false;
-    }
-
-    /// Begins the means anew.
-    fn restart(&mut self) {
-        self.since = 0.0;
-        self.wrenches.iter_mut().for_each(|(_, since)| *since = 0.0);
-    }
-}
-
 impl ContactMonitor {
     /// The robot is untouched and at rest: from the next tick on, what it reads here is zero. The offsets of the sensors and
     /// the bias become what the last 0.25 s showed; a sensor without readings keeps its offset. Both last as long as a

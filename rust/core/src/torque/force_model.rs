@@ -5,6 +5,9 @@ use nalgebra::Vector3;
 use crate::error::{Error, Result};
 use crate::spatial::basis::across;
 
+/// Precision of the force across the normal where there is no friction (1/N^2).
+pub(super) const NO_FRICTION: f64 = 1e24;
+
 /// Which forces a contact can exert.
 ///
 /// ```

@@ -3,9 +3,9 @@
 use nalgebra::{Matrix2, Matrix6x2, Matrix6x3, Vector2, Vector3};
 
 use super::force_model::directions;
+use super::force_model::NO_FRICTION;
 use super::frames::Frame;
 use super::link_target::LinkTarget;
-use super::push_likelihood::NO_FRICTION;
 use crate::spatial::vector::stack;
 
 /// Normal equations of a displacement along the surface, from which the force of the contact is eliminated.

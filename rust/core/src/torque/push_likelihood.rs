@@ -4,7 +4,7 @@
 use nalgebra::{Matrix3, Vector3};
 use wide::f64x4;
 
-use super::force_model::{directions, ForceModel};
+use super::force_model::{directions, ForceModel, NO_FRICTION};
 use super::frames::Frame;
 use super::link_target::LinkTarget;
 use super::place_step::PlaceStep;
@@ -15,8 +15,6 @@ pub(crate) const LANES: usize = 4;
 const PASSES: usize = 2;
 /// A point that no torque shows has a gain of zero, by which nothing is divided.
 const LEAST_GAIN: f64 = 1e-30;
-/// Precision of the force across the normal where there is no friction (1/N^2).
-pub(super) const NO_FRICTION: f64 = 1e24;
 
 type Lanes3 = [f64x4; 3];
 

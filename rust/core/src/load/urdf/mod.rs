@@ -4,6 +4,7 @@
 
 mod build;
 mod checked;
+mod element;
 mod for_pinocchio;
 mod joints;
 mod lock;

@@ -3,7 +3,7 @@
 use urdf_rs::Geometry as Shape;
 
 use super::build::pose;
-use super::checked::check;
+use super::element::check;
 use super::meshes::MeshFinder;
 use super::options::{UrdfGeometry, UrdfOptions};
 use super::xml::Element;
