@@ -83,7 +83,7 @@ def _best_cone_forces(
     """
 
 def _restore(kind: str, version: str, content: Any) -> Any:
-    """Restores what `pickle` or `copy` has taken apart."""
+    """The object of a class, from what `__reduce__` gave."""
 
 def _checked_urdf(
     path: str | PathLike[str],

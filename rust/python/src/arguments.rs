@@ -5,7 +5,6 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 use pyo3::prelude::*;
 
 use crate::errors::{input, is_fault, refused};
-use crate::robot::PyRobot;
 
 /// Characters of a wrong value that a message shows at most.
 const SHOWN: usize = 80;
@@ -71,13 +70,8 @@ pub fn pushing(object: &Bound<'_, PyAny>) -> PyResult<bool> {
     flag("pushing", object)
 }
 
-/// The argument `robot`.
-pub fn robot<'py>(object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyRobot>> {
-    let robot = object.cast::<PyRobot>().cloned();
-    robot.map_err(|error| wrong("robot", "a contactsense.Robot", object, error.into()))
-}
-
-fn wrong(name: &str, wanted: &str, object: &Bound<'_, PyAny>, cause: PyErr) -> PyErr {
+/// An argument of the wrong type.
+pub fn wrong(name: &str, wanted: &str, object: &Bound<'_, PyAny>, cause: PyErr) -> PyErr {
     refused(object.py(), cause, || format!("{name}: expected {wanted}, got {}", shown(object)))
 }
 

@@ -6,6 +6,7 @@ use numpy::{PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethod
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
+use crate::arguments::number_if_any;
 use crate::errors::{input, refused};
 use crate::returned::reserve;
 
@@ -49,6 +50,14 @@ impl Vector {
         let slice = self.slice();
         <[f64; N]>::try_from(slice)
             .map_err(|_| input(py, format!("{name}: expected {N} numbers, got {}", slice.len())))
+    }
+}
+
+/// A scalar, or one number per velocity variable.
+pub fn scalar_or_vector(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    match number_if_any(object)? {
+        Some(number) => Ok(vec![number]),
+        None => Ok(Vector::new(name, object)?.into_vec()),
     }
 }
 

@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arguments::{number, robot, text};
+use crate::arguments::{number, text};
 use crate::arrays::Vector;
 use crate::calibration_parts::{PyBodyInertia, PyJointFriction, PyPayload};
 use crate::errors::{input, interruptible, to_python};
@@ -14,6 +14,7 @@ use crate::noise::{noise_model, PyNoiseModel};
 use crate::pickle::{plain_dict, reduced, Reduced};
 use crate::returned::{from_rows, numbers, read_only};
 use crate::robot::PyRobot;
+use crate::robot_argument::robot;
 
 /// The argument `calibration`.
 pub fn calibration_of(object: &Bound<'_, PyAny>) -> PyResult<Calibration> {

@@ -7,12 +7,13 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arguments::{robot, sole};
+use crate::arguments::sole;
 use crate::arrays::{rows, Readings, Vector};
 use crate::calibration::calibration_of;
 use crate::errors::to_python;
 use crate::returned::{from_rows, read_only, wrench_rows};
 use crate::robot::PyRobot;
+use crate::robot_argument::robot;
 use crate::sensor::{sensor_tuple, sensors};
 
 /// Frees the readings of force/torque sensors of the weight and inertia behind them (Vorndamme 2017, eqs. 13-19).

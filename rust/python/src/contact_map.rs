@@ -9,7 +9,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arguments::{robot, sole, whole, Number};
+use crate::arguments::{sole, whole, Number};
 use crate::arrays::Vector;
 use crate::calibration::noise_of;
 use crate::errors::to_python;
@@ -20,6 +20,7 @@ use crate::once::Once;
 use crate::pickle::{plain_dict, reduced, Reduced};
 use crate::returned::{from_rows, numbers, read_only};
 use crate::robot::PyRobot;
+use crate::robot_argument::robot;
 use crate::sensor::names;
 
 /// Of a contact whose identifiability is asked for, by default: a firm touch [N].

@@ -5,12 +5,12 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arguments::robot;
 use crate::arrays::{Readings, Table, Vector};
 use crate::errors::{detached, input, to_python};
 use crate::pickle::{plain_dict, reduced, Reduced};
 use crate::returned::vector;
 use crate::robot::PyRobot;
+use crate::robot_argument::robot;
 use crate::sensor::sensors;
 
 /// One thing that is wrong with a robot's model or measurements, as `diagnose` finds it.

@@ -9,15 +9,15 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arguments::{pushing, robot, sole, whole, Number};
-use crate::arrays::{Readings, Vector};
+use crate::arguments::{pushing, sole, whole, Number};
+use crate::arrays::{scalar_or_vector, Readings, Vector};
 use crate::calibration::noise_of;
 use crate::errors::to_python;
 use crate::isolation::PyIsolation;
 use crate::names::Names;
-use crate::observer::scalar_or_vector;
 use crate::returned::{numbers, wrench_rows};
 use crate::robot::PyRobot;
+use crate::robot_argument::robot;
 use crate::sensor::{sensor_names, sensor_tuple, sensors, wrench_thresholds};
 
 /// Contacts reported at most: an argument, or the default.

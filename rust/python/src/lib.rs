@@ -38,6 +38,7 @@ mod pickle;
 mod report;
 mod returned;
 mod robot;
+mod robot_argument;
 mod robot_mechanics;
 mod robot_vectors;
 mod sensor;

@@ -8,16 +8,16 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arguments::{number, pushing, robot, sole, whole, Number};
-use crate::arrays::{Readings, Vector};
+use crate::arguments::{number, pushing, sole, whole, Number};
+use crate::arrays::{scalar_or_vector, Readings, Vector};
 use crate::calibration::calibration_of;
 use crate::errors::to_python;
 use crate::isolator::contact_count;
 use crate::names::Names;
-use crate::observer::scalar_or_vector;
 use crate::report::PyContactReport;
 use crate::returned::{numbers, read_only, wrench_rows};
 use crate::robot::PyRobot;
+use crate::robot_argument::robot;
 use crate::sensor::{sensor_tuple, sensors, wanted_places, wrench_thresholds};
 
 /// The sense of touch of one robot, called once a control tick: observer, compensation, bias, detection, isolation.

@@ -5,11 +5,12 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arguments::{number, robot, whole};
+use crate::arguments::{number, whole};
+use crate::arrays::scalar_or_vector;
 use crate::errors::{detached, input, to_python};
-use crate::observer::scalar_or_vector;
 use crate::pickle::{plain_dict, reduced, Reduced};
 use crate::returned::{numbers, read_only};
+use crate::robot_argument::robot;
 
 /// A planned motion: where the robot is at each instant, `n` rows at equal distances of time. Read-only.
 ///

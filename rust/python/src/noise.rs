@@ -5,13 +5,12 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arguments::robot;
-use crate::arrays::Vector;
+use crate::arrays::{scalar_or_vector, Vector};
 use crate::errors::{input, to_python};
-use crate::observer::scalar_or_vector;
 use crate::pickle::{plain_dict, reduced, Reduced};
 use crate::returned::numbers;
 use crate::robot::PyRobot;
+use crate::robot_argument::robot;
 
 /// Errors of the external torque of the untouched robot, each as one standard deviation.
 ///

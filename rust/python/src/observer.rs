@@ -7,20 +7,13 @@ use contactsense::Sample;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::arguments::{number_if_any, robot, sole, Number};
-use crate::arrays::Vector;
+use crate::arguments::{sole, Number};
+use crate::arrays::{scalar_or_vector, Vector};
 use crate::calibration::calibration_of;
 use crate::errors::to_python;
 use crate::returned::numbers;
 use crate::robot::PyRobot;
-
-/// A scalar, or one number per velocity variable.
-pub fn scalar_or_vector(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
-    match number_if_any(object)? {
-        Some(number) => Ok(vec![number]),
-        None => Ok(Vector::new(name, object)?.into_vec()),
-    }
-}
+use crate::robot_argument::robot;
 
 /// The generalised momentum observer (Vorndamme 2017, eqs. 4-6) with its acceleration (eq. 9).
 ///

@@ -13,17 +13,17 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arguments::{robot, sole, whole, Number};
-use crate::arrays::Vector;
+use crate::arguments::{sole, whole, Number};
+use crate::arrays::{scalar_or_vector, Vector};
 use crate::calibration::noise_of;
 use crate::errors::{input, to_python};
 use crate::estimate::PyContactEstimate;
 use crate::filter_options::{read_schedule, used_options, Choice};
 use crate::names::Names;
-use crate::observer::scalar_or_vector;
 use crate::pickle::arrays_alone;
 use crate::returned::{from_rows, numbers, read_only};
 use crate::robot::PyRobot;
+use crate::robot_argument::robot;
 use crate::sensor::names;
 
 /// A copy of the particles, one row each; all arrays are read-only.

@@ -5,12 +5,13 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arguments::{robot, shown};
+use crate::arguments::shown;
 use crate::arrays::{Readings, Table};
 use crate::errors::{input, to_python};
 use crate::pickle::{plain_dict, reduced, Reduced};
 use crate::returned::{from_rows, numbers, read_only};
 use crate::robot::PyRobot;
+use crate::robot_argument::robot;
 use crate::sensor::PyForceTorqueSensor;
 
 /// A tool behind a force/torque sensor, and the sensor's offset, as `identify_tool` finds them.
