@@ -1,0 +1,200 @@
+// The C interface of contactsense. Written by cbindgen from rust/capi: `make header`.
+
+#ifndef CONTACTSENSE_H
+#define CONTACTSENSE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+// Contacts in a report at most.
+#define CS_MAX_CONTACTS 8
+
+// How a call ended.
+typedef enum {
+  CS_OK = 0,
+  // An argument cannot be used; objects are unchanged, but a refused sample counts as time that passed.
+  CS_ERROR_INPUT = 1,
+  // The description of the robot cannot be used.
+  CS_ERROR_MODEL = 2,
+  // A mesh or a primitive cannot be used.
+  CS_ERROR_GEOMETRY = 3,
+  // There is not enough memory.
+  CS_ERROR_MEMORY = 4,
+  // A fault of the library. The object of the call must not be used any more, except to free it.
+  CS_ERROR_FAULT = 5,
+} cs_status;
+
+// The sense of touch of one robot. One thread at a time may use it: a call during another one is refused.
+typedef struct cs_monitor cs_monitor;
+
+// A robot. It does not change: any number of threads may use it, and monitors share it.
+typedef struct cs_robot cs_robot;
+
+// How a URDF is read.
+typedef struct {
+  // Folders that `package://` names and mesh files may come from, besides the URDF's own; NULL for none.
+  const char *const *package_dirs;
+  size_t package_dir_count;
+  // Whether the root link moves freely.
+  bool floating_base;
+} cs_urdf_options;
+
+// How a monitor works; `cs_monitor_options_default` has the defaults.
+typedef struct {
+  // Time between two calls [s].
+  double dt;
+  // Gain of the momentum observer [1/s].
+  double observer_gain;
+  // Torques that are a contact: one number for all joints, or one for each [Nm; N for sliding joints]. NULL: 0.5.
+  const double *torque_threshold;
+  // Number of these: 1, or that of `cs_robot_nv`.
+  size_t torque_threshold_count;
+  // Time constant of the bias that is tracked without contact [s]; 0 for no tracking.
+  double bias_time_constant;
+  // A signal stays on so long after it was last over its threshold [s].
+  double hold_time;
+  // Contacts reported at most.
+  size_t max_contacts;
+  // A contact is located if 90 % of the places that explain the torques are this near to its point [m].
+  double locate_within;
+  // Samples of the surface for the posterior of a contact; 0 for closed forms only.
+  size_t samples;
+} cs_monitor_options;
+
+// The measurements of a tick.
+typedef struct {
+  // Configuration, `cs_robot_nq` numbers.
+  const double *q;
+  // Velocity, `cs_robot_nv` numbers.
+  const double *v;
+  // Motor torque, `cs_robot_ntau` numbers.
+  const double *tau;
+  // Torque of friction, which is subtracted from `tau`; NULL for none.
+  const double *friction;
+  // Time since the last accepted sample [s]; 0 for that of the options.
+  double dt;
+} cs_sample;
+
+// A contact. Numbers that are not known are NaN.
+typedef struct {
+  // Index of the link, for `cs_robot_link_name`.
+  size_t link;
+  // Whether 90 % of the places that explain the torques lie within `locate_within` of the point.
+  bool located;
+  // Whether redundant torques agree with the contacts of the report.
+  bool verified;
+  // Where it is, world frame [m].
+  double point[3];
+  // Outward normal of the surface there, world frame.
+  double normal[3];
+  // Force on the robot, world frame [N].
+  double force[3];
+  // Force and moment on the robot at the link's origin, world axes [N, Nm].
+  double wrench[6];
+  // Standard deviation of the point [m].
+  double point_std;
+  // Probability that the contact is on this link.
+  double probability;
+  // The ball of this radius about the point holds 90 % of the posterior [m].
+  double region_radius;
+  // The same contact has the same number in all ticks, from 0 on; -1 where contacts are not followed.
+  int64_t id;
+  // When it began, since the first call [s].
+  double since;
+  // Its largest force so far [N].
+  double peak_force;
+} cs_contact;
+
+// What a monitor says of a tick. The caller's memory: nothing in it has to be freed.
+typedef struct {
+  // Since the first call [s].
+  double time;
+  // How unlikely the torques are without contact, in standard deviations; NaN with thresholds for each joint.
+  double significance;
+  // Whether there is a contact.
+  bool collision;
+  // Whether it began with this tick.
+  bool onset;
+  // Whether a torque that stood still became the bias.
+  bool remainder_learned;
+  // Whether there were more contacts, or explanations, than are reported.
+  bool truncated;
+  size_t contact_count;
+  cs_contact contacts[CS_MAX_CONTACTS];
+  // Room for `nv` numbers that the caller owns, or NULL: the external torque without bias [Nm, N].
+  double *external_torque;
+  // The same without wanted contacts and stops of joints.
+  double *collision_torque;
+} cs_report;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+// What was wrong in the last call of this thread that failed; empty before. Valid until another call of this thread
+// fails.
+const char *cs_error_message(void);
+
+// The version of the library, such as "0.1.0".
+const char *cs_version(void);
+
+// Reads a robot from a URDF file.
+//
+// `options` may be NULL. The robot belongs to the caller, who frees it with `cs_robot_free`.
+//
+// # Safety
+// `path` and the folders end with NUL; `robot` can be written to.
+cs_status cs_robot_from_urdf(const char *path, const cs_urdf_options *options, cs_robot **robot);
+
+// Frees a robot; NULL is allowed. Monitors of it live on.
+//
+// # Safety
+// `robot` is NULL, or was made by `cs_robot_from_urdf` and not freed before.
+void cs_robot_free(cs_robot *robot);
+
+// The defaults, for calls every `dt` seconds.
+cs_monitor_options cs_monitor_options_default(double dt);
+
+// Makes a monitor, which belongs to the caller, who frees it with `cs_monitor_free`. The robot may be freed before.
+//
+// # Safety
+// `robot` and `options` live, with the numbers that they point to; `monitor` can be written to.
+cs_status cs_monitor_new(const cs_robot *robot,
+                         const cs_monitor_options *options,
+                         cs_monitor **monitor);
+
+// Frees a monitor; NULL is allowed.
+//
+// # Safety
+// `monitor` is NULL, or was made by `cs_monitor_new`, not freed before, and no thread uses it.
+void cs_monitor_free(cs_monitor *monitor);
+
+// Takes in a tick, and writes what the monitor says of it. Allocates no memory, unless it fails.
+//
+// # Safety
+// `monitor` lives; `sample` and its numbers live; `report` can be written to, and has room where it points to some.
+cs_status cs_monitor_update(cs_monitor *monitor,
+                            const cs_sample *sample,
+                            cs_report *report);
+
+// Takes in a tick with an external torque that the robot's controller estimates; `tau` of the sample is that torque,
+// `cs_robot_nv` numbers, `v` may be NULL, and `friction` is not read.
+//
+// # Safety
+// As of `cs_monitor_update`.
+cs_status cs_monitor_update_external(cs_monitor *monitor,
+                                     const cs_sample *sample,
+                                     cs_report *report);
+
+// Forgets all ticks; the next one is the first.
+//
+// # Safety
+// `monitor` lives.
+cs_status cs_monitor_reset(cs_monitor *monitor);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* CONTACTSENSE_H */
