@@ -8,10 +8,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from tools.doc_pages import blocks, differences, run_page
 
 ROOT = Path(__file__).parents[1]
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 SNIPPET = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\((?!https?://)([^)#]+)(?:#[^)]*)?\)")
 SECTION_LINK = re.compile(r"\]\((?!https?://)([^)#]*)#([^)]+)\)")
@@ -108,9 +109,12 @@ def test_readme_snippet_finds_the_contact(tmp_path: Path) -> None:
     ids=lambda page: page.stem,
 )
 def test_page_snippets_run(page: Path, tmp_path: Path) -> None:
-    if page.stem in ("simulation", "obstacle_contacts", "particle_filter"):
+    """And print what the page says."""
+    if "from contactsense import sim" in page.read_text(encoding="utf-8"):
         pytest.importorskip("mujoco")
-    run("-c", "\n".join(SNIPPET.findall(page.read_text(encoding="utf-8"))), folder=tmp_path)
+    for block, printed in zip(blocks(page), run_page(page, tmp_path), strict=True):
+        if block.stated is not None:
+            assert differences(block.stated, printed) == [], printed
 
 
 @pytest.mark.parametrize("page", [*PAGES, ROOT / "CONTRIBUTING.md"], ids=lambda page: page.name)

@@ -80,7 +80,7 @@ def draw_contact(axes: Axes, robot: Robot, contact: ShownContact, greatest: floa
             ends = np.stack([start, at])
             outline = [withStroke(linewidth=6.0, foreground="white")]
             axes.plot(*ends.T, color=colour, lw=3.5, solid_capstyle="butt", zorder=5, path_effects=outline)
-        axes.plot(*at, "o", color=colour, ms=9.0, mec="white", mew=1.2, zorder=6)
+        axes.plot(*at, "o", color=colour, ms=7.0, mec="white", mew=1.2, zorder=6)
     axes.autoscale_view()
     axes.set_axis_off()
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._contact_view import ShownContact, draw_contact
-from .._pictures import DETECTED, GREY, TEXT, save_picture
+from .._pictures import DETECTED, ESTIMATE, GREY, TEXT, save_picture
 from .._places import Places, draw_places, link_colours, link_legend
 from .._robot_view import FloatArray, body, eye, share_scale
 from .result import Replay, ReplayedContact
@@ -37,7 +37,7 @@ def save_contact_picture(argument: str, path: Path, title: str, result: Replay) 
         count = len(result.contacts)
         above.suptitle(f"{title}: {count} contact{'' if count == 1 else 's'}", x=0.02, ha="left", fontsize=13)
         axes = below.subplots()
-        _draw_torque(axes, result)
+        (_draw_force if result.robot.floating_base else _draw_torque)(axes, result)
         if count > _FEW:
             colours = link_colours([contact.link for contact in result.contacts])
             _draw_many(above, result, colours)
@@ -121,6 +121,24 @@ def _draw_torque(axes: Axes, result: Replay) -> None:
     axes.plot(time[::every] - _start(result), torque, color=GREY, linewidth=0.6)
     axes.set_title("External torque of all joints; contacts are shaded")
     axes.set_ylabel("external torque [Nm]")
+    _finish(axes)
+
+
+def _draw_force(axes: Axes, result: Replay) -> None:
+    """In place of the torque, most of which is the ground's where the base is free."""
+    ticks = result.contact_ticks
+    for contact in result.contacts:
+        own = ticks["id"] == contact.id
+        force = np.linalg.norm(ticks["force"][own], axis=1)
+        axes.plot(ticks["time"][own] - _start(result), force, color=ESTIMATE, linewidth=1.5)
+    time = result.ticks["time"]
+    axes.set_xlim(0.0, float(time[-1]) - _start(result) if len(time) > 1 else 1.0)
+    axes.set_title("Estimated force of each contact; contacts are shaded")
+    axes.set_ylabel("force [N]")
+    _finish(axes)
+
+
+def _finish(axes: Axes) -> None:
     axes.set_xlabel("time from the log's start [s]")
     axes.margins(x=0.0, y=0.15)
 
