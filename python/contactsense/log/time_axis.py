@@ -99,8 +99,8 @@ def _seconds(recording: Recording, table: Table, column: str | None) -> tuple[st
         best = min(advancing, key=lambda name: _faults(table.columns[name]))
         return _scaled(best, table.columns[best])
     raise InputError(
-        f"columns: {table.name} has no column of time; name it with columns={{'time': ...}} (--column time=...); "
-        f"there are {listing(recording)}"
+        f"columns: {table.name} has no column of time; name it with columns={{'time': ...}} "
+        f"(--column time=...); there are {listing(recording)}"
     )
 
 

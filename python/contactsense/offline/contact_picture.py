@@ -22,7 +22,7 @@ _SIZE = (10.0, 7.5)  # [inch]
 # So many contacts have a drawing of the robot each; more share one.
 _FEW = 4
 _LEGEND = (
-    "Blue: likeliest link. Arrow: force, which ends at the point; orange: located, yellow: not located. "
+    "Blue: likeliest link. Arrow: force, which ends at the point; orange: located, yellow: not located.\n"
     "Circle: holds 90 % of the posterior."
 )
 # More points than this are not told apart on a picture.
@@ -35,7 +35,7 @@ def save_contact_picture(argument: str, path: Path, title: str, result: Replay) 
     def draw(figure: Figure) -> None:
         above, below = figure.subfigures(2, 1, squeeze=False, height_ratios=[3, 2])[:, 0]
         count = len(result.contacts)
-        above.suptitle(f"{title}: {count} contact{'' if count == 1 else 's'}", x=0.02, ha="left", fontsize=13)
+        above.suptitle(f"{title}: {count} contact{'' if count == 1 else 's'}", x=0.02, ha="left", fontsize=14)
         axes = below.subplots()
         (_draw_force if result.robot.floating_base else _draw_torque)(axes, result)
         if count > _FEW:
@@ -65,9 +65,9 @@ def _draw_few(figure: Figure, result: Replay) -> None:
     views = figure.subplots(1, len(shown), squeeze=False)[0]
     for axes, contact, each in zip(views, result.contacts, shown, strict=True):
         draw_contact(axes, result.robot, each, greatest)
-        axes.set_title(_caption(contact), fontsize=10, loc="center")
+        axes.set_title(_caption(contact), fontsize=12, loc="center")
     share_scale(views)
-    figure.supxlabel(_LEGEND, fontsize=8, color=TEXT)
+    figure.supxlabel(_LEGEND, fontsize=10, color=TEXT)
 
 
 def _shown(result: Replay, contact: ReplayedContact) -> ShownContact:
@@ -153,4 +153,4 @@ def _name_spans(axes: Axes, result: Replay) -> None:
     for contact in result.contacts:
         middle = 0.5 * (contact.start + contact.end) - _start(result)
         place = axes.get_xaxis_transform()
-        axes.text(middle, 0.98, contact.link, ha="center", va="top", fontsize=9, color=TEXT, transform=place)
+        axes.text(middle, 0.98, contact.link, ha="center", va="top", fontsize=11, color=TEXT, transform=place)
