@@ -38,7 +38,7 @@ def test_replay_prints_contacts_and_how_the_file_was_read(
 ) -> None:
     assert run(replay(file)) == 0
     told = capsys.readouterr()
-    assert "pushed.csv: 1 contacts in 2.0 s" in told.out
+    assert "pushed.csv: 1 contact in 2.0 s" in told.out
     assert "iiwa_link_7" in told.out
     assert "position from 'pos_1' to 'pos_7' of pushed [rad]" in told.err
 
@@ -74,7 +74,7 @@ def test_a_damaged_file_gives_what_can_be_read_and_its_own_exit_code(
     file.write_bytes(whole[: int(0.9 * len(whole))])
     assert run(replay(file)) == 3
     told = capsys.readouterr()
-    assert "1 contacts" in told.out
+    assert "1 contact in" in told.out
     assert "damaged: line 18" in told.err
     assert file.read_bytes() == whole[: int(0.9 * len(whole))]
 
@@ -105,7 +105,7 @@ def test_ctrl_c_keeps_what_is_done(
 
     monkeypatch.setattr(module, "replay", stopped)
     assert run(replay(file)) == 130
-    assert "1 contacts in 1.5 s, until it was interrupted" in capsys.readouterr().out
+    assert "1 contact in 1.5 s, until it was interrupted" in capsys.readouterr().out
 
 
 def test_thresholds_by_joint_and_an_external_torque(

@@ -61,6 +61,7 @@ def load(site, filename, package_dirs=(), scale=None):
         ("package:///pkg/in.obj", "share/pkg/in.obj"),
         ("package://meshes/in.stl", "arm/meshes/in.stl"),
         ("package://arm/meshes/in.stl", "arm/meshes/in.stl"),
+        ("package://elsewhere/meshes/in.stl", "arm/meshes/in.stl"),
     ],
 )
 def test_file_is_found(site, filename, found):

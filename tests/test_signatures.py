@@ -39,6 +39,7 @@ SIGNATURES = {
     "Replay.to_parquet": "folder",
     "Replay.to_json_lines": "path",
     "Replay.to_mcap": "path",
+    "Replay.to_png": "path, title='Log'",
     "ReplayedContact.to_dict": "",
     "Calibration.of_description": "robot",
     "Calibration.load": "path",
@@ -133,6 +134,7 @@ IN_PYTHON = {
     "Replay.to_parquet",
     "Replay.to_json_lines",
     "Replay.to_mcap",
+    "Replay.to_png",
     "ReplayedContact.to_dict",
 }
 

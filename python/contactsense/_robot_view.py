@@ -10,8 +10,8 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
+from ._core import Robot
 from ._pictures import BODY
-from .robot import Robot
 
 FloatArray: TypeAlias = NDArray[np.float64]
 

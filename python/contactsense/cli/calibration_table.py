@@ -47,8 +47,6 @@ def print_calibration(
     if calibration.payload is not None:
         payload = calibration.payload
         console.print(f"Payload: {payload.mass:.3f} kg", highlight=False)
-    for start, end in calibration.contacts:
-        console.print(f"A contact from {start:.2f} to {end:.2f} s was left out.", highlight=False)
     for note in calibration.notes:
         console.print(Text(f"Note: {note}"))
     console.print(Text(f"Written to {file}"))

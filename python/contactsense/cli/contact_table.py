@@ -31,7 +31,8 @@ def contact_table(name: str, result: Replay) -> Table:
     time = result.ticks["time"]
     seconds = float(time[-1] - time[0]) if len(time) else 0.0
     until = ", until it was interrupted" if result.interrupted else ""
-    title = f"{name}: {len(result.contacts)} contacts in {seconds:.1f} s{until}"
+    count = len(result.contacts)
+    title = f"{name}: {count} contact{'' if count == 1 else 's'} in {seconds:.1f} s{until}"
     table = plain_table(title)
     table.caption, table.caption_justify = _NOTE, "left"
     for header, right in _COLUMNS:

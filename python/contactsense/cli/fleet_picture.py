@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .._pictures import save_picture
+from .._places import Places, draw_places, link_colours, link_legend
 from ..fleet.summary import places_of
 from ..robot import Robot
-from .places import Places, draw_places, link_colours, link_legend
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import fnmatch
 import logging
-import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,10 +17,9 @@ from .._core import ForceTorqueSensor
 from ..errors import InputError
 from ..log import Log, read_log
 from ..robot import DESCRIPTIONS, Robot
+from .robot_files import package_folders, summary
 
 _Geometry = Literal["collision", "visual", "collision_or_visual"]
-# A warning of one link is of its mesh.
-_OF_MESH = re.compile(r"link '(.*?)': ")
 _GEOMETRIES: tuple[_Geometry, ...] = ("collision", "visual", "collision_or_visual")
 
 RobotOption = Annotated[
@@ -29,7 +27,11 @@ RobotOption = Annotated[
 ]
 PackageOption = Annotated[
     list[Path] | None,
-    typer.Option("--package-dir", help="Folder with the meshes of package:// names; may be repeated."),
+    typer.Option(
+        "--package-dir",
+        help="Folder with the packages of package:// names, besides that of the URDF's own package and "
+        "those of a sourced ROS workspace; may be repeated.",
+    ),
 ]
 LockedOption = Annotated[
     list[str] | None,
@@ -99,7 +101,7 @@ class LogOptions:
     def load_robot(self) -> Robot:
         """The robot; its warnings are printed on stderr."""
         robot = self._robot()
-        for line in _summary(robot.warnings):
+        for line in summary(robot.warnings):
             print(f"{robot.name}: {line}", file=sys.stderr)
         return robot
 
@@ -115,7 +117,7 @@ class LogOptions:
             _quietly,
             Robot.from_urdf,
             self.robot,
-            package_dirs=self.package_dir or [],
+            package_dirs=[*(self.package_dir or []), *package_folders(self.robot)],
             floating_base=self.floating_base,
             geometry=shapes,
             missing_meshes="warn",
@@ -151,16 +153,6 @@ class LogOptions:
         log = read_log(path, robot, **self.reading(sensors))
         print(log.reading, file=sys.stderr)
         return log
-
-
-def _summary(warnings: Sequence[str]) -> list[str]:
-    """Warnings of a robot; those of meshes, of which there may be hundreds, as one line."""
-    links = {found[1] for text in warnings if (found := _OF_MESH.match(text))}
-    others = [text for text in warnings if not _OF_MESH.match(text)]
-    if not links:
-        return others
-    count = len(warnings) - len(others)
-    return [*others, f"meshes of {len(links)} links are open or were repaired; Robot.warnings lists {count}"]
 
 
 def _quietly(load: Callable[..., Robot], *arguments: Any, **options: Any) -> Robot:

@@ -101,6 +101,10 @@ def command(
     if out is not None:
         require("log", "pyarrow", "rosbags", "mcap")
     loaded = options.load_robot()
+    if png is not None and not loaded.link_names:
+        raise InputError(
+            "png: the robot has no surface that could be drawn; see --package-dir and --geometry"
+        )
     code = 0
     for path in logs:
         log = options.load_log(path, loaded, sensors)
@@ -108,9 +112,9 @@ def command(
             result = replay(log, monitor_of(log, loaded, **arguments), on_progress=show)
         print_contacts(path, result, as_json)
         if png is not None:
-            from .contact_picture import save_contact_picture
+            from ..offline.contact_picture import save_contact_picture
 
-            save_contact_picture(png, path.name, loaded, result)
+            save_contact_picture("png", png, path.name, result)
         if out is not None:
             write(result, out / _stem(path) if len(logs) > 1 else out)
         if result.interrupted:

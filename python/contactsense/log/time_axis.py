@@ -15,6 +15,7 @@ from .recording import Column, Recording, Table, listing
 _NAMES = (
     *("time", "t", "timestamp", "time s", "timestamp s", "stamp"),
     *("time ns", "time us", "time ms", "timestamp ns", "timestamp us", "timestamp ms"),
+    *("stamp s", "stamp ns", "stamp us", "stamp ms"),
     *("sec", "secs", "seconds", "rosbag timestamp", "robot time", "clock"),
 )
 _UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
@@ -98,8 +99,8 @@ def _seconds(recording: Recording, table: Table, column: str | None) -> tuple[st
         best = min(advancing, key=lambda name: _faults(table.columns[name]))
         return _scaled(best, table.columns[best])
     raise InputError(
-        f"columns: {table.name} has no column of time; name it with columns={{'time': ...}}; "
-        f"there are {listing(recording)}"
+        f"columns: {table.name} has no column of time; name it with columns={{'time': ...}} "
+        f"(--column time=...); there are {listing(recording)}"
     )
 
 

@@ -5,12 +5,15 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
+from .._extras import require
+from ..errors import InputError
 from ..log import Log
 
 
@@ -152,6 +155,28 @@ class Replay:
         from .mcap import write_mcap
 
         write_mcap(self.log, self.ticks, self.contact_ticks, path, self.robot, self.sensors)
+
+    def to_png(self, path: str | os.PathLike[str], title: str = "Log") -> Path:
+        """Draws where on the robot the contacts are, and when.
+
+        Args:
+            path: the file; one that exists is replaced, ".png" is added where there is no suffix.
+            title: of the picture.
+
+        Returns:
+            The absolute path of the file.
+
+        Raises:
+            MissingExtraError: matplotlib is not installed.
+            InputError: the file cannot be written, or the robot has no surface to draw.
+        """
+        require("plot", "matplotlib")
+        if not self.robot.link_names:
+            raise InputError("robot: has no surface that could be drawn")
+        from .._pictures import picture_file
+        from .contact_picture import save_contact_picture
+
+        return save_contact_picture("path", picture_file("path", path), title, self)
 
 
 def _plain(value: Any) -> Any:

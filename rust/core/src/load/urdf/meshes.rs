@@ -108,6 +108,10 @@ impl MeshFinder {
                 candidates.push(folder.join(inner.trim_start_matches('/')));
             }
         }
+        // A package's files that were copied beside its URDF, in a folder of another name.
+        if package != ".." {
+            candidates.push(own.join(inner.trim_start_matches('/')));
+        }
         Ok(candidates)
     }
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
-from .._pictures import JOINTS, TEXT
-from .._robot_view import Eye, FloatArray, body, eye, share_scale
-from ..robot import Robot
+from ._contact_view import visible
+from ._core import Robot
+from ._pictures import JOINTS, TEXT
+from ._robot_view import FloatArray, body, eye, share_scale
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,9 +21,6 @@ if TYPE_CHECKING:
 # Opposite sides, from above, so that each place is seen from one of them [deg].
 _AZIMUTHS = (50.0, 230.0)
 _ELEVATION = 25.0
-# A place may lie a little below the surface that it is on [m].
-_BELOW = 0.005
-
 
 # Area of a dot, for each newton, and its bounds [points²].
 _AREA, _SMALLEST, _LARGEST = 2.0, 20.0, 200.0
@@ -68,7 +65,7 @@ def draw_places(
         view = eye(azimuth, _ELEVATION)
         each.add_collection(body(robot, q, view))
         flat = np.column_stack([points @ view[0], points @ view[1]])
-        seen = _visible(robot, q, points, view)
+        seen = visible(robot, q, points, view)
         for rows, full in ((order[~seen[order]], False), (order[seen[order]], True)):
             each.scatter(
                 flat[rows, 0],
@@ -96,14 +93,3 @@ def _in_world(robot: Robot, q: FloatArray, places: Places) -> FloatArray:
         for link, point in zip(places.links, places.points, strict=True)
     ]
     return np.array(moved).reshape(-1, 3)
-
-
-def _visible(robot: Robot, q: FloatArray, points: FloatArray, view: Eye) -> NDArray[np.bool_]:
-    """Points with no surface between them and the eye."""
-    seen = np.ones(len(points), dtype=bool)
-    for link in robot.link_names:
-        pose = robot.link_pose(q, link)
-        towards = np.tile(view[2] @ pose[:3, :3], (len(points), 1))
-        hits = robot.surface(link).cast_rays((points - pose[:3, 3]) @ pose[:3, :3], towards)
-        seen[hits.ray[hits.distance > _BELOW]] = False
-    return seen
