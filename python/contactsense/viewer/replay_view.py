@@ -11,28 +11,42 @@ from typing import Any
 
 import numpy as np
 
+from .. import _core
 from .._pictures import JOINTS
 from .._tables import number_text
 from ..errors import InputError
 from ..offline import Replay, ReplayedContact
 from ..offline.whole import whole_file
-from .moment import ReplayMoments
-from .page import FRAMES, address_of, close_page, open_page
+from .page import FRAMES, Page
+from .place import Place
+from .replay_moments import ReplayMoments
 
 # Points of a plot, which are more than its pixels.
 _POINTS = 1500
 
 
-class LogPage:
-    """A page in the browser, on this machine only, until it is closed."""
+class ReplayView:
+    """The page of a log, until it is closed; made by `contactsense.view`.
 
-    def __init__(self, title: str, result: Replay, moments: ReplayMoments, port: int = 8080) -> None:
+    It can be used as a context manager.
+
+    Args:
+        title: of the page.
+        result: what is shown.
+        moments: of it.
+        place: where the page is served.
+
+    Raises:
+        InputError: the log has no rows, or the page cannot be opened.
+    """
+
+    def __init__(self, title: str, result: Replay, moments: ReplayMoments, place: Place) -> None:
         if not len(moments):
             raise InputError("log: has no rows to show")
-        self._moments = moments
+        self._moments, self._sensors = moments, result.sensors
         self._time = result.ticks["time"] - result.ticks["time"][0]
-        self._server, self._stage = open_page(title, result.robot, result.log.q[0], port)
-        self._lock = threading.Lock()
+        self._page = Page(title, result.robot, result.log.q[0], place, result.sensors)
+        self._lock = threading.RLock()
         self._playing = threading.Event()
         self._closed = threading.Event()
         self._build(title, result)
@@ -41,8 +55,8 @@ class LogPage:
 
     @property
     def address(self) -> str:
-        """Where the page is."""
-        return address_of(self._server)
+        """Where the page is, with the token where it has one."""
+        return self._page.address
 
     def show(self, seconds: float) -> None:
         """Shows the row at a time from the log's start."""
@@ -59,34 +73,47 @@ class LogPage:
             raise InputError(
                 f"start: must be before end, and before the end of the log, {self._time[-1]:g} s"
             )
-        serializer = self._server.get_scene_serializer()
-        for seconds in times:
-            self._draw(float(seconds))
-            serializer.insert_sleep(1.0 / FRAMES)
+        with self._lock:
+            serializer = self._page.server.get_scene_serializer()
+            for seconds in times:
+                self._draw(float(seconds))
+                serializer.insert_sleep(1.0 / FRAMES)
+            text = serializer.as_html()
+            self._draw(float(self._slider.value))
         with whole_file(path) as file:
-            file.write_text(serializer.as_html(), encoding="utf-8")
+            file.write_text(text, encoding="utf-8")
 
     def _draw(self, seconds: float) -> None:
         row = min(int(np.searchsorted(self._time, seconds)), len(self._time) - 1)
-        with self._lock, self._server.atomic():
-            self._stage.show(self._moments.at(row))
+        with self._lock, self._page.server.atomic():
+            moment = self._moments.at(row)
+            self._page.stage.show(moment)
+            self._now.content = moment.told(self._sensors)
+
+    def _follow(self, _: object) -> None:
+        with self._lock:  # first: what waits longest would draw last, and what is no longer wanted
+            self._draw(float(self._slider.value))
 
     def close(self) -> None:
         """Ends the page."""
         self._closed.set()
-        close_page(self._server)
+        self._page.close()
+
+    def __enter__(self) -> ReplayView:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
     def _build(self, title: str, result: Replay) -> None:
-        gui: Any = self._server.gui
-        gui.configure_theme(
-            control_layout="fixed", control_width="large", show_logo=False, show_share_button=False
-        )
+        gui: Any = self._page.server.gui
         gui.add_markdown(f"**{title}**: {len(result.contacts)} contacts in {self._time[-1]:.1f} s")
         length = float(self._time[-1]) or 1.0
         self._slider = gui.add_slider("time [s]", 0.0, length, min(length, 0.001), 0.0)
-        self._slider.on_update(lambda _: self._draw(float(self._slider.value)))
+        self._slider.on_update(self._follow)
         button = gui.add_button("Play / pause")
         button.on_click(lambda _: self._playing.clear() if self._playing.is_set() else self._playing.set())
+        self._now = gui.add_markdown("")
         _add_torques(gui, self._time, result)
         gui.add_html(_table(result.contacts, float(result.ticks["time"][0])))
 
@@ -100,6 +127,16 @@ class LogPage:
                     self._slider.value = min(now, float(self._time[-1]))
                     if now >= self._time[-1]:
                         self._playing.clear()
+
+
+def replay_view(title: str, result: Replay, place: Place) -> ReplayView:
+    """The page of a log; a single contact of an arm has its posterior.
+
+    Raises:
+        InputError: the log has no rows, or the page cannot be opened.
+    """
+    contact_map = None if result.robot.floating_base else _core.ContactMap(result.robot)
+    return ReplayView(title, result, ReplayMoments(result, contact_map), place)
 
 
 def _add_torques(gui: Any, seconds: Any, result: Replay) -> None:
