@@ -26,6 +26,18 @@ from contactsense.viewer.slot import MOST_PARTICLES, Slot
 pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning")
 
 
+def shown(page: cs.View, q: object, report: cs.ContactReport, *more: object) -> tuple[np.ndarray, Moment]:
+    """External torque and instant that the page gets."""
+    time.sleep(0.1)  # until the next one is due
+    before = page._slot.count
+    page.show(q, report, *more)  # type: ignore[arg-type]
+    until = time.monotonic() + 20.0
+    while (found := page._slot.read()) is None or found[0] == before:
+        assert time.monotonic() < until
+        time.sleep(0.001)
+    return found[1:]
+
+
 def test_the_page_of_a_control_loop_shows_what_is_felt(request: pytest.FixtureRequest) -> None:
     log = pushed()
     monitor = cs.ContactMonitor(arm(), dt=DT, torque_threshold=0.6)
@@ -35,11 +47,7 @@ def test_the_page_of_a_control_loop_shows_what_is_felt(request: pytest.FixtureRe
         for row in range(round(PUSHED / DT)):
             report = monitor.update(log.q[row], log.v[row], log.tau[row])
             page.show(log.q[row], report)
-        time.sleep(0.1)  # until the next one is due
-        page.show(log.q[row], report)
-        written = page._slot.read()
-        assert written is not None
-        _, torque, moment = written
+        torque, moment = shown(page, log.q[row], report)
         (touch,) = moment.touches
         np.testing.assert_array_equal(moment.q, log.q[row])
         assert not len(moment.particles.points)
@@ -57,6 +65,23 @@ def test_the_page_of_a_control_loop_shows_what_is_felt(request: pytest.FixtureRe
             page.show([0.0], report)
     assert page._process.returncode == 0
     page.close()
+
+
+def test_a_report_of_another_robot_is_named_at_the_next_instant() -> None:
+    other = cs.Robot.named("atlas")
+    report = cs.ContactMonitor(other, dt=DT).update(
+        other.neutral(), np.zeros(other.nv), np.zeros(other.nv - 6)
+    )
+    q = arm().neutral()
+    with cs.view(cs.ContactMonitor(arm(), dt=DT), port=free_port()) as page:
+        page.show(q, report)
+        until = time.monotonic() + 20.0
+        while page._failure is None:
+            assert time.monotonic() < until
+            time.sleep(0.01)
+        time.sleep(0.1)
+        with pytest.raises(cs.InputError, match=r"^report: is not of the robot"):
+            page.show(q, report)
 
 
 def test_an_instant_is_read_whole_or_not_at_all(tmp_path: Path) -> None:
@@ -104,11 +129,7 @@ def test_particles_of_a_filter_are_shown(request: pytest.FixtureRequest) -> None
     with cs.view(cs.ContactMonitor(robot, dt=DT), port=free_port()) as page:
 
         def written(given: object) -> Cloud:
-            time.sleep(0.1)  # until the next one is due
-            page.show(q, report, given)  # type: ignore[arg-type]
-            found = page._slot.read()
-            assert found is not None
-            return found[2].particles
+            return shown(page, q, report, given)[1].particles
 
         # More than there is room for: so many, from the first to the last.
         many = np.arange(3.0 * 25_000).reshape(-1, 3)
@@ -160,11 +181,9 @@ def test_sensors_of_a_log_and_of_a_control_loop_are_shown(request: pytest.Fixtur
     with cs.view(monitor, port=free_port()) as page:
         for k in range(row):
             report = monitor.update(log.q[k], log.v[k], log.tau[k], log.wrenches[k])
-        page.show(log.q[row - 1], report)
-        written = page._slot.read()
-        assert written is not None
-        np.testing.assert_array_equal(written[2].wrenches, report.wrenches)
-        assert "sensor wrist: 25." in written[2].told([sensor])
+        _, moment = shown(page, log.q[row - 1], report)
+        np.testing.assert_array_equal(moment.wrenches, report.wrenches)
+        assert "sensor wrist: 25." in moment.told([sensor])
         if chromium() is not None:
             browser = request.getfixturevalue("browser")
             browser.open(page.address)

@@ -9,6 +9,7 @@ import os
 import pickle
 import sys
 import threading
+import time
 from collections.abc import Sequence
 from contextlib import redirect_stdout
 from dataclasses import replace
@@ -16,9 +17,11 @@ from pathlib import Path
 
 from .. import _core
 from ..errors import InputError
+from .legend import legend
 from .moment import posterior_of
 from .page import Page
 from .slot import Slot
+from .torque_plot import RecentTorques
 
 # Between two looks at the slot [s]: short beside the time between two instants, so that none is missed.
 _LOOK = 0.004
@@ -38,7 +41,7 @@ def main() -> None:
     print(page.address, flush=True)
     contact_map = None if robot.floating_base else _core.ContactMap(robot)
     with redirect_stdout(sys.stderr):  # nobody reads on
-        _show(page, slot, sensors, contact_map, ended)
+        _show(page, slot, robot, sensors, contact_map, ended)
     page.close()
 
 
@@ -52,11 +55,14 @@ def _end_with_stdin(ended: threading.Event) -> None:
 def _show(
     page: Page,
     slot: Slot,
+    robot: _core.Robot,
     sensors: Sequence[_core.ForceTorqueSensor],
     contact_map: _core.ContactMap | None,
     ended: threading.Event,
 ) -> None:
     text = page.server.gui.add_markdown("")
+    torques = RecentTorques(page.server.gui, robot)
+    page.server.gui.add_html(legend(has_sensors=bool(sensors), has_particles=True))
     shown = 0
     while not ended.wait(_LOOK):
         if slot.count == shown:
@@ -64,12 +70,17 @@ def _show(
         newest = slot.read()
         if newest is None:
             continue
+        if not shown:
+            page.look(newest[2].q)
         shown, torque, moment = newest
-        if contact_map is not None and len(moment.touches) == 1:
+        # Particles take the place of the posterior, which would hide them.
+        is_sought = len(moment.touches) == 1 and not len(moment.particles.points)
+        if contact_map is not None and is_sought:
             moment = replace(moment, posterior=posterior_of(contact_map.evaluate(moment.q, torque)))
         with page.server.atomic():
             page.stage.show(moment)
             text.content = moment.told(sensors)
+            torques.add(time.monotonic(), torque, bool(moment.touches))
 
 
 if __name__ == "__main__":

@@ -64,11 +64,16 @@ class Page:
         self.server.gui.configure_theme(
             control_layout="fixed", control_width="large", show_logo=False, show_share_button=False
         )
-        self.stage = Stage(self.server.scene, robot, q, sensors)
-        camera, middle = self.server.initial_camera, self.stage.middle
+        self.stage = Stage(self.server.scene, robot, sensors)
+        self.look(q)
+
+    def look(self, q: NDArray[np.float64]) -> None:
+        """Where a browser that comes to the page looks from: all of the robot is seen."""
+        middle, radius = self.stage.settle(q)
+        camera = self.server.initial_camera
         camera.fov = np.radians(_FIELD)
         camera.look_at = tuple(middle)
-        camera.position = tuple(middle + _FROM * self.stage.size)
+        camera.position = tuple(middle + _FROM * radius)
 
     def close(self) -> None:
         """Ends the page."""

@@ -12,14 +12,15 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from .._pictures import JOINTS
 from .._tables import number_text
 from ..errors import InputError
 from ..offline import Replay, ReplayedContact
 from ..offline.whole import whole_file
+from .legend import legend
 from .page import FRAMES, Page
 from .place import Place
 from .replay_moments import ReplayMoments
+from .torque_plot import TorquePlot
 
 # Points of a plot, which are more than its pixels.
 _POINTS = 1500
@@ -108,14 +109,17 @@ class ReplayView:
     def _build(self, title: str, result: Replay) -> None:
         gui: Any = self._page.server.gui
         gui.add_markdown(f"**{title}**: {len(result.contacts)} contacts in {self._time[-1]:.1f} s")
-        length = float(self._time[-1]) or 1.0
+        length = round(float(self._time[-1]), 3) or 1.0  # [s]: a label of the slider
         self._slider = gui.add_slider("time [s]", 0.0, length, min(length, 0.001), 0.0)
         self._slider.on_update(self._follow)
         button = gui.add_button("Play / pause")
         button.on_click(lambda _: self._playing.clear() if self._playing.is_set() else self._playing.set())
         self._now = gui.add_markdown("")
-        _add_torques(gui, self._time, result)
+        every = max(1, len(self._time) // _POINTS)
+        columns = [self._time, result.ticks["external_torque"], result.ticks["collision"]]
+        TorquePlot(gui, result.robot, "t [s]").show(*(column[::every] for column in columns))
         gui.add_html(_table(result.contacts, float(result.ticks["time"][0])))
+        gui.add_html(legend(has_sensors=bool(result.sensors), has_particles=False))
 
     def _play(self) -> None:
         """Moves the time line on, as fast as the log went."""
@@ -139,37 +143,12 @@ def replay_view(title: str, result: Replay, place: Place) -> ReplayView:
     return ReplayView(title, result, ReplayMoments(result, contact_map), place)
 
 
-def _add_torques(gui: Any, seconds: Any, result: Replay) -> None:
-    from viser import uplot
-
-    every = max(1, len(seconds) // _POINTS)
-    torques = result.ticks["external_torque"][::every]
-    names = result.robot.joint_names
-    # Bars from bottom to top where there is contact.
-    bounds = 1.1 * min(0.0, float(torques.min())), 1.1 * max(1.0, float(torques.max()))
-    contact = np.where(result.ticks["collision"][::every], bounds[1], bounds[0])
-    bars = uplot.Series(label="contact", fill="rgba(213,94,0,0.2)", width=0, fillTo=bounds[0])
-    series = [uplot.Series(label="t [s]"), bars]
-    for k in range(torques.shape[1]):
-        # Six variables of a floating base have one joint.
-        label = names[k] if len(names) == torques.shape[1] else str(k)
-        series.append(uplot.Series(label=label, stroke=JOINTS[k % len(JOINTS)], width=1))
-    gui.add_uplot(
-        (seconds[::every].copy(), contact, *torques.T.copy()),
-        tuple(series),
-        title="External torque [Nm]; contacts shaded",
-        scales={"x": uplot.Scale(time=False), "y": uplot.Scale(range=bounds)},
-        legend=uplot.Legend(show=torques.shape[1] <= len(JOINTS)),
-        aspect=1.5,
-    )
-
-
 def _table(contacts: Sequence[ReplayedContact], start: float) -> str:
     """The contacts as a table of HTML."""
-    rows = [("from, to [s]", "link", "prob. [%]", "90 % [cm]", "located", "peak [N]")]
+    rows = [("time [s]", "link", "prob. [%]", "90 % [cm]", "located", "peak [N]")]
     rows += [
         (
-            f"{contact.start - start:.2f}, {contact.end - start:.2f}",
+            f"{contact.start - start:.2f} to {contact.end - start:.2f}",
             contact.link,
             number_text(100.0 * contact.link_probability, 0),
             number_text(100.0 * contact.region_radius, 1),
@@ -178,6 +157,9 @@ def _table(contacts: Sequence[ReplayedContact], start: float) -> str:
         )
         for contact in contacts
     ]
-    cells = ("".join(f'<td style="padding:1px 8px">{escape(cell)}</td>' for cell in row) for row in rows)
+    cells = (
+        "".join(f'<td style="padding:1px 4px;white-space:nowrap">{escape(cell)}</td>' for cell in row)
+        for row in rows
+    )
     body = "".join(f"<tr>{row}</tr>" for row in cells)
     return f'<table style="font-size:12px">{body}</table>'

@@ -20,31 +20,27 @@ _METRES_PER_NEWTON = 0.006
 _LONGEST = 0.8  # arrow [m]: that of 133 N and more
 _LEAST_FORCE = 1.0  # of which an arrow is drawn [N]: less is noise of most sensors
 _SHAFT, _HEAD, _HEAD_LENGTH = 0.009, 0.022, 0.045  # [m]
-_DOT, _PARTICLE = 0.012, 0.01  # [m]
+_POINT, _DOT, _PARTICLE = 0.012, 0.009, 0.009  # [m]
 _GROUND = 4.0  # width, as a multiple of the robot's size
+_OPACITY, _SMOOTH = 0.12, 4  # of a region, and how often the triangles of its ball are divided
 # Places that are less likely than this share of the likeliest one are not drawn.
 _LEAST = 0.01
 # From unlikely to likely: pale yellow to dark red; of particles pale pink to purple.
-_HEAT = np.array([[255.0, 237.0, 160.0], [189.0, 0.0, 38.0]])
-_PURPLE = np.array([[205.0, 110.0, 195.0], [110.0, 20.0, 120.0]])
+HEAT = np.array([[255.0, 237.0, 160.0], [189.0, 0.0, 38.0]])
+PURPLE = np.array([[205.0, 110.0, 195.0], [110.0, 20.0, 120.0]])
 
 
 class Stage:
-    """A robot in a scene; `show` moves it and draws an instant.
-
-    `middle` `(3,)` and `size` are those of a ball about the robot at the beginning [m].
-    """
+    """A robot in a scene; `show` moves it and draws an instant."""
 
     def __init__(
         self,
         scene: Any,
         robot: _core.Robot,
-        q: Rows,
         sensors: Sequence[_core.ForceTorqueSensor] = (),
     ) -> None:
         self._scene, self._robot = scene, robot
         scene.set_up_direction("+z")
-        corners = []
         self._links: dict[str, Any] = {}
         for link in robot.link_names:
             surface = robot.surface(link)
@@ -54,18 +50,25 @@ class Stage:
                 f"/robot/{link}", surface.vertices.astype(np.float32), surface.triangles.astype(np.uint32),
                 color=_rgb(BODY), side="double",
             )  # fmt: skip
-            pose = robot.link_pose(q, link)
-            points = surface.vertices @ pose[:3, :3].T + pose[:3, 3]
-            corners += [points.min(axis=0), points.max(axis=0)]
-        low, high = np.min(corners, axis=0), np.max(corners, axis=0)
-        self.middle, self.size = (low + high) / 2.0, float(np.linalg.norm(high - low)) / 2.0
-        width = _GROUND * np.ceil(self.size)
-        ground = (*np.round(self.middle[:2]), min(0.0, low[2]))
-        scene.add_grid("/ground", width=width, height=width, cell_size=0.1, position=ground)
         self._rings = SensorRings(scene, robot, sensors)
         self._drawn: dict[str, Any] = {}
         self._kept: set[str] = set()
         self._coloured: set[str] = set()
+
+    def settle(self, q: Rows) -> tuple[Rows, float]:
+        """Lays the ground below the robot: middle `(3,)` and radius of a ball about the robot [m]."""
+        corners = []
+        for link in self._links:
+            pose = self._robot.link_pose(q, link)
+            points = self._robot.surface(link).vertices @ pose[:3, :3].T + pose[:3, 3]
+            corners += [points.min(axis=0), points.max(axis=0)]
+        low, high = np.min(corners, axis=0), np.max(corners, axis=0)
+        middle, radius = (low + high) / 2.0, float(np.linalg.norm(high - low)) / 2.0
+        width = _GROUND * np.ceil(radius)
+        # Lines of the grid are at whole metres, also where a robot walks far from the origin.
+        position = (*np.round(middle[:2]), low[2] if self._robot.floating_base else min(0.0, low[2]))
+        self._scene.add_grid("/ground", width=width, height=width, cell_size=0.1, position=position)
+        return middle, radius
 
     def show(self, moment: Moment) -> None:
         """Draws an instant in place of the one before."""
@@ -79,8 +82,8 @@ class Stage:
             zip(self._rings.move(moment.q), moment.wrenches, strict=False)
         ):
             self._arrow(f"/sensor force {number}", origin, wrench[:3], COLOUR)
-        self._cloud("/posterior", moment.posterior, _HEAT, _DOT)
-        self._cloud("/particles", moment.particles, _PURPLE, _PARTICLE)
+        self._cloud("/posterior", moment.posterior, HEAT, _DOT)
+        self._cloud("/particles", moment.particles, PURPLE, _PARTICLE)
         for name in self._drawn.keys() - self._kept:
             self._drawn.pop(name).remove()
 
@@ -99,11 +102,11 @@ class Stage:
     def _draw(self, number: int, touch: Touch) -> None:
         colour = _rgb(ESTIMATE if touch.located else UNSURE)
         add, name = self._scene.add_icosphere, f"/contact {number}"
-        self._put(f"{name}/point", add, radius=_DOT, color=colour, position=touch.point)
+        self._put(f"{name}/point", add, radius=_POINT, color=colour, position=touch.point)
         if np.isfinite(touch.region_radius) and touch.region_radius > 0.0:
             self._put(
-                f"{name}/region", add, radius=touch.region_radius, color=colour, opacity=0.15,
-                position=touch.point, cast_shadow=False,
+                f"{name}/region", add, radius=touch.region_radius, color=colour, opacity=_OPACITY,
+                position=touch.point, cast_shadow=False, subdivisions=_SMOOTH,
             )  # fmt: skip
         self._arrow(f"{name}/force", touch.point, touch.force, colour)
 
@@ -115,7 +118,7 @@ class Stage:
         along = force / size * min(_METRES_PER_NEWTON * size, _LONGEST)
         self._put(
             name, self._scene.add_arrows, points=np.array([[point - along, point]], dtype=np.float32),
-            colors=np.array(colour, dtype=np.uint8), shaft_radius=_SHAFT, head_radius=_HEAD,
+            colors=_linear(colour), shaft_radius=_SHAFT, head_radius=_HEAD,
             head_length=_HEAD_LENGTH,
         )  # fmt: skip
 
@@ -143,6 +146,12 @@ class Stage:
             return
         for key, value in properties.items():
             setattr(handle, key, value)
+
+
+def _linear(colour: tuple[int, int, int]) -> NDArray[np.uint8]:
+    """A colour for arrows, which viser takes as shares of light; all others are as on a screen (sRGB)."""
+    light = ((np.array(colour) / 255.0 + 0.055) / 1.055) ** 2.4
+    return np.round(255.0 * light).astype(np.uint8)
 
 
 def _rgb(colour: str) -> tuple[int, int, int]:

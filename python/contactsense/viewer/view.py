@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from typing import TYPE_CHECKING, Any, overload
 
@@ -17,15 +18,16 @@ if TYPE_CHECKING:
     from .replay_view import ReplayView
     from .slot import Slot
 
-# Between two instants that are shown [s].
-_BETWEEN = 1.0 / 30.0
+# Between two instants that are shown [s]: a little less than a thirtieth, as some come late.
+_BETWEEN = 1.0 / 32.0
 
 
 class View:
     """The page of a control loop, in a process of its own; made by `view`.
 
-    It costs a control tick about as much as reading the clock, and some microseconds in 30 ticks a second. It
-    waits for nothing: what the page cannot show in time is not shown. It can be used as a context manager.
+    It costs a control tick about as much as reading the clock. In about 30 ticks a second it also hands the
+    instant on to a thread, which writes it for the page while the loop waits for its next tick. It waits for
+    nothing: what the page cannot show in time is not shown. It can be used as a context manager.
 
     Args:
         slot: memory that the page reads.
@@ -43,8 +45,17 @@ class View:
     """
 
     def __init__(self, slot: Slot, process: Any, address: str, nq: int) -> None:
+        from .particles import cloud_of  # here: in the loop it would take milliseconds once
+
         self._slot, self._process, self._address, self._nq = slot, process, address, nq
+        self._cloud_of = cloud_of
         self._due = 0.0
+        # A queue of one, and a lock that is free while there is something in it.
+        self._newest: tuple[Any, ...] = ()
+        self._empty = threading.Lock()
+        self._empty.acquire()
+        self._failure: Exception | None = None
+        threading.Thread(target=self._write, daemon=True).start()
 
     @property
     def address(self) -> str:
@@ -67,25 +78,46 @@ class View:
                 distances in their order are shown.
 
         Raises:
-            InputError: an argument has the wrong shape.
+            InputError: an argument has the wrong shape, or the report of an earlier instant was of another
+                robot.
         """
         now = time.monotonic()
         if now < self._due:
             return
         # As often as is due on average, also where ticks are late; after a pause it begins anew.
         self._due = max(self._due, now - _BETWEEN) + _BETWEEN
-        position = np.asarray(q, dtype=np.float64)
+        if self._failure is not None:
+            raise InputError("report: is not of the robot of the page") from self._failure
+        position = np.array(q, dtype=np.float64)  # the loop may change its own
         if position.shape != (self._nq,):
             raise InputError(f"q: must be ({self._nq},), not {position.shape}")
-        cloud = None
-        if particles is not None:
-            from .particles import cloud_of
+        cloud = None if particles is None else self._cloud_of(particles)
+        self._newest = position, report, cloud
+        if self._empty.locked():
+            self._empty.release()
 
-            cloud = cloud_of(particles)
-        self._slot.write(position, report, cloud)
+    def _write(self) -> None:
+        """Writes what is handed on until that is nothing.
+
+        It gets the interpreter when the loop sleeps or reads the robot, after its tick. In the tick it would
+        take tens of microseconds: what runs so rarely is in no cache.
+        """
+        while True:
+            self._empty.acquire()
+            newest = self._newest
+            if not newest:
+                return
+            try:
+                self._slot.write(*newest)
+            except Exception as failure:
+                self._failure = failure
+                return
 
     def close(self) -> None:
         """Ends the page."""
+        self._newest = ()
+        if self._empty.locked():
+            self._empty.release()
         if self._process.poll() is None:
             self._process.stdin.close()
             self._process.wait()
