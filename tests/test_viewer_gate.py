@@ -132,6 +132,7 @@ def test_the_token_opens_and_is_kept_in_a_cookie(port: int, inner: Inner) -> Non
         get(f"/?token={TOKEN}", method="CONNECT"),
         get(f"/?token={TOKEN}", version="HTTP/1.0"),
         get(f"http://robot/?token={TOKEN}"),
+        get(f"//[robot/?token={TOKEN}"),
         get(f"/?token={TOKEN}", "Content-Length: 40\r\n"),
         get(f"/?token={TOKEN}", "Content-Length: 0\r\nTransfer-Encoding: chunked\r\n"),
         get(f"/?token={TOKEN}", "Transfer-Encoding : chunked\r\n"),
@@ -157,6 +158,15 @@ def test_a_wrong_cookie_is_refused(port: int, inner: Inner) -> None:
     for header in (cookie(port, TOKEN[::-1]), cookie(port + 1), cookie(port, "")):
         assert b"403" in talk(port, get("/", header)).split(b"\r\n")[0]
     assert inner.received == []
+
+
+def test_a_page_of_another_server_is_refused(port: int, inner: Inner) -> None:
+    for origin in ("http://evil", "http://robot:8081", "null"):
+        header = f"{cookie(port)}Origin: {origin}\r\n{UPGRADE}"
+        assert b"403" in talk(port, get("/", header)).split(b"\r\n")[0]
+    assert inner.received == []
+    own = f"{cookie(port)}Origin: http://robot:8080\r\n{UPGRADE}"
+    assert talk(port, get("/", own)).endswith(b"hi")
 
 
 def test_a_second_request_on_a_connection_goes_nowhere(port: int, inner: Inner) -> None:

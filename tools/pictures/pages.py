@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import io
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
 import numpy as np
+from matplotlib.image import imread
 
 import contactsense as cs
 from contactsense import sim
@@ -25,6 +27,10 @@ _PUSHES = (("iiwa_link_4", 30.0, 2.0, 0.8), ("iiwa_link_6", 25.0, 5.0, 1.0), ("i
 _SHOWN = 5.5  # in the middle of the second [s]
 _TO_EYE = np.array([0.8, 0.5, 0.3])  # from the robot to the camera of the page, about
 _PORT = 8470
+_NEXT = 0.035  # [s]: until the next instant is shown
+# Shares of the pixels of a page: those of the robot at least, and those that change at most where it stands
+# still but for a time line. Colours are the same up to rounding.
+_LEAST_DRAWN, _STILL, _SAME = 0.05, 0.01, 0.02
 # A browser without a graphics card is told so: not on a picture.
 _CLOSE_NOTES = "document.querySelectorAll('[class*=Notification] button').forEach(it => it.click())"
 
@@ -75,18 +81,22 @@ def view_html(file: Path) -> None:
 
 
 def view_live(file: Path) -> None:
-    """A control loop in which the arm is pushed at its elbow."""
-    robot = cs.Robot.named("iiwa14")
-    q, rest, pose = _POSE, np.zeros(7), robot.link_pose(_POSE, "iiwa_link_4")
-    point, normal = _seen_point(robot, "iiwa_link_4")
-    jacobian = robot.jacobian(q, "iiwa_link_4", pose[:3, :3] @ point + pose[:3, 3])
-    pushed = jacobian[:3].T @ (-40.0 * pose[:3, :3] @ normal)
-    held, rng = robot.inverse_dynamics(q, rest, rest) - pushed, np.random.default_rng(_SEED)
+    """A control loop in which the arm is pushed at its wrist."""
+    robot, link = cs.Robot.named("iiwa14"), "iiwa_link_6"
+    q, rest, pose = _POSE, np.zeros(7), robot.link_pose(_POSE, link)
+    point, normal = _seen_point(robot, link)
+    jacobian = robot.jacobian(q, link, pose[:3, :3] @ point + pose[:3, 3])
+    # Somewhat downward, so that the arrow is not seen from its end.
+    pushed = jacobian[:3].T @ (-14.0 * pose[:3, :3] @ normal + [0.0, 0.0, -6.0])
+    still, rng = robot.inverse_dynamics(q, rest, rest), np.random.default_rng(_SEED)
     monitor = cs.ContactMonitor(robot, dt=_DT)
     with cs.view(monitor, port=_PORT) as page:
-        for _ in range(1000):
-            report = monitor.update(q, rest, held + rng.normal(0.0, 0.1, 7))
-        page.show(q, report)
+        for tick in range(200):
+            torque = still - pushed * (60 < tick < 110 or tick > 140)
+            for _ in range(20):
+                report = monitor.update(q, rest, torque + rng.normal(0.0, 0.1, 7))
+            page.show(q, report)
+            time.sleep(_NEXT)
         _take(page.address, file)
 
 
@@ -96,7 +106,7 @@ def view_particles(file: Path) -> None:
     touch = sim.touch_scene(
         robot, "iiwa_link_2", kind="sphere", force_range=(20.0, 30.0), least_torque=2.0, seed=0
     )
-    pace = sim.Pace(motions=5, duration=0.2)
+    pace = sim.Pace(motions=10, duration=0.2)
     path = sim.joint_exploration(robot, touch, amplitude=np.deg2rad(2.0), pace=pace, seed=0)
     run = sim.record_quasi_static(robot, touch.contact(robot), path.time, path.q)
     measured = sim.TorqueError(percent=3.0, newton_metres=0.02, seed=0).measure(run.external_torque)
@@ -105,32 +115,31 @@ def view_particles(file: Path) -> None:
         for q, torque in zip(run.q, measured, strict=True):
             particles.update(q, torque)
             report = monitor.update_external(q, torque)
-        page.show(q, report, particles)
+            page.show(q, report, particles)
+            time.sleep(_NEXT)
         _take(page.address, file)
 
 
 def _take(address: str, file: Path) -> None:
-    """The page as it is once nothing moves any more."""
+    """The page as it is once nothing moves any more but its time line."""
     with Browser() as browser:
         browser.open(address)
         until = time.monotonic() + PATIENCE
-        browser.wait_for("document.querySelector('canvas')")
-        before = b""
-        for picture in _pictures(browser):
-            # What is not there yet is the same twice, too: the robot makes up most of a picture.
-            if picture == before and len(picture) > 60_000:
-                break
-            if time.monotonic() > until:
-                raise TimeoutError(f"{address} never stood still")
-            before = picture
-    file.write_bytes(picture)
-
-
-def _pictures(browser: Browser) -> Iterator[bytes]:
-    while True:
-        browser.evaluate(_CLOSE_NOTES)
-        time.sleep(2.0)
-        yield browser.picture()
+        before = np.zeros(())
+        while time.monotonic() < until:
+            browser.evaluate(_CLOSE_NOTES)
+            time.sleep(2.0)
+            picture = browser.picture()
+            pixels = imread(io.BytesIO(picture), format="png")[..., :3]
+            # What is not there yet stands still, too: most of a page without a robot is white.
+            is_drawn = np.mean(pixels.min(axis=2) < 0.9) > _LEAST_DRAWN
+            if is_drawn and before.shape == pixels.shape:
+                moved = np.abs(pixels - before).max(axis=2) > _SAME
+                if np.mean(moved) < _STILL:
+                    file.write_bytes(picture)
+                    return
+            before = pixels
+        raise TimeoutError(f"{address} never stood still")
 
 
 PICTURES: dict[str, Callable[[Path], None]] = {

@@ -11,14 +11,12 @@ from __future__ import annotations
 import asyncio
 import errno
 import hmac
-import re
 import threading
-from collections.abc import Mapping
 from concurrent.futures import Future
-from dataclasses import dataclass
 from urllib.parse import parse_qsl, urlencode, urlsplit
 
 from ..errors import InputError
+from .request import END, Request, read_request
 
 _HEAD = 16 * 1024  # of a request or an answer [bytes]; browsers send less than two thousand
 _HEAD_TIME = 5.0  # in which the head of a request is there [s]
@@ -26,32 +24,12 @@ _PIECE = 64 * 1024  # that is passed on at once [bytes]
 # Connections that may be reading their heads: more are closed at once, so that strangers take no memory.
 _MOST_UNKNOWN = 64
 _PORTS = 100  # tried one after the other where they are in use
-_NAME = re.compile(r"[!#$%&'*+.^_`|~0-9A-Za-z-]+")
-_CONTROL = re.compile(r"[\x00-\x1f\x7f]")
-_END = b"\r\n\r\n"
-_FORBIDDEN = (
-    b"HTTP/1.1 403 Forbidden\r\nContent-Type: text/plain\r\nContent-Length: 34\r\nConnection: close\r\n\r\n"
-    b"The address must have its ?token=\n"
-)
+_REASON = b"The address must have its ?token=\n"
+_FORBIDDEN = b"HTTP/1.1 403 Forbidden\r\nContent-Type: text/plain\r\nConnection: close\r\n"
+_FORBIDDEN += b"Content-Length: %d\r\n\r\n" % len(_REASON) + _REASON
 # Of a request that goes on: `Cookie` stays here, and there is no body.
 _PASSED = ("accept", "accept-encoding", "origin", "user-agent")
 _WEBSOCKET = tuple(f"sec-websocket-{name}" for name in ("key", "version", "protocol", "extensions"))
-
-
-class _RefusedError(Exception):
-    """A request that is not let through."""
-
-
-@dataclass(frozen=True)
-class _Request:
-    """The head of a request for a file or a websocket."""
-
-    target: str
-    headers: Mapping[str, str]
-
-    @property
-    def upgrades(self) -> bool:
-        return self.headers.get("upgrade", "").lower() == "websocket"
 
 
 class Gate:
@@ -79,8 +57,9 @@ class Gate:
 
     def close(self) -> None:
         """Closes it, and all connections through it."""
-        self._loop.call_soon_threadsafe(self._closed.set)
-        self._thread.join()
+        if self._thread.is_alive():
+            self._loop.call_soon_threadsafe(self._closed.set)
+            self._thread.join()
 
     async def _serve(self, host: str, port: int, opened: Future[int]) -> None:
         self._loop, self._closed = asyncio.get_running_loop(), asyncio.Event()
@@ -102,7 +81,7 @@ class Gate:
                 return await asyncio.start_server(self._meet, host, attempt, limit=_HEAD), attempt
             except OSError as error:
                 cause = error
-                if error.errno not in (errno.EADDRINUSE, errno.EACCES):
+                if error.errno != errno.EADDRINUSE:
                     break
         raise InputError(f"host: cannot listen at '{host}', port {port}: {cause}")
 
@@ -119,33 +98,33 @@ class Gate:
         finally:
             writer.close()
 
-    async def _known(self, reader: asyncio.StreamReader) -> _Request | None:
+    async def _known(self, reader: asyncio.StreamReader) -> Request | None:
         """The request of someone who knows the token."""
         if self._unknown >= _MOST_UNKNOWN:
             return None
         self._unknown += 1
         try:
-            head = await asyncio.wait_for(reader.readuntil(_END), _HEAD_TIME)
-            request = _read(head)
-            return request if self._knows(request) else None
-        except (asyncio.TimeoutError, asyncio.LimitOverrunError, _RefusedError):
+            head = await asyncio.wait_for(reader.readuntil(END), _HEAD_TIME)
+            request = read_request(head)
+            return request if request.is_of_own_page and self._knows(request) else None
+        except (asyncio.TimeoutError, asyncio.LimitOverrunError, ValueError):
             return None
         finally:
             self._unknown -= 1
 
-    def _knows(self, request: _Request) -> bool:
+    def _knows(self, request: Request) -> bool:
         pairs = (pair.partition("=") for pair in request.headers.get("cookie", "").split(";"))
         told = [value for name, _, value in pairs if name.strip() == self._cookie]
         told += [value for name, value in parse_qsl(urlsplit(request.target).query) if name == "token"]
         return any([hmac.compare_digest(value.strip().encode(), self._token) for value in told])
 
     async def _let_through(
-        self, request: _Request, reader: asyncio.StreamReader, writer: asyncio.StreamWriter
+        self, request: Request, reader: asyncio.StreamReader, writer: asyncio.StreamWriter
     ) -> None:
         inner_reader, inner = await asyncio.open_connection("127.0.0.1", self._inner, limit=_HEAD)
         try:
             inner.write(self._head(request))
-            answer = await inner_reader.readuntil(_END)
+            answer = await inner_reader.readuntil(END)
             status, _, rest = answer.partition(b"\r\n")
             cookie = f"{self._cookie}={self._token.decode()}; Path=/; HttpOnly; SameSite=Strict"
             more = f"Set-Cookie: {cookie}\r\nReferrer-Policy: no-referrer\r\nCache-Control: no-store\r\n"
@@ -163,7 +142,7 @@ class Gate:
         finally:
             inner.close()
 
-    def _head(self, request: _Request) -> bytes:
+    def _head(self, request: Request) -> bytes:
         """What the page is asked for."""
         parts = urlsplit(request.target)
         query = urlencode([pair for pair in parse_qsl(parts.query) if pair[0] != "token"])
@@ -178,23 +157,3 @@ async def _pass_on(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -
     while piece := await reader.read(_PIECE):
         writer.write(piece)
         await writer.drain()
-
-
-def _read(head: bytes) -> _Request:
-    """The head of a request, of which there are no two readings."""
-    text = head.decode("latin-1")[: -len(_END)]
-    first, *lines = text.split("\r\n")
-    words = first.split(" ")
-    if len(words) != 3 or words[0] != "GET" or words[2] != "HTTP/1.1" or not words[1].startswith("/"):
-        raise _RefusedError
-    headers: dict[str, str] = {}
-    for line in lines:
-        name, colon, value = line.partition(":")
-        key = name.lower()
-        if not colon or not _NAME.fullmatch(name) or (key in headers and key != "cookie"):
-            raise _RefusedError
-        headers[key] = f"{headers[key]}; {value.strip()}" if key in headers else value.strip()
-    # No line ends but the ones that were split at, no other control characters, and no body.
-    if _CONTROL.search("".join((first, *lines))) or {"content-length", "transfer-encoding"} & headers.keys():
-        raise _RefusedError
-    return _Request(words[1], headers)
