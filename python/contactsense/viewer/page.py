@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Sequence
-from contextlib import redirect_stdout
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -46,8 +45,7 @@ class Page:
         import viser
 
         host, port = (place.host, place.port) if place.token is None else (LOOPBACK, 0)
-        # What it says of itself goes to stdout, which is for results.
-        with redirect_stdout(sys.stderr):
+        with _quiet():
             self.server: Any = viser.ViserServer(
                 host=host, port=port, label=f"contactsense: {title}", verbose=False
             )
@@ -61,9 +59,12 @@ class Page:
                 self.close()
                 raise
             self.address = f"http://{place.shown_host}:{self._gate.port}/?token={place.token}"
-        self.server.gui.configure_theme(
-            control_layout="fixed", control_width="large", show_logo=False, show_share_button=False
-        )
+        gui, theme = self.server.gui, {"control_width": "large"}
+        if hasattr(gui, "main_panel"):
+            gui.main_panel.dock_right()
+        else:  # before viser 1.1
+            theme["control_layout"] = "fixed"
+        gui.configure_theme(**theme, show_logo=False, show_share_button=False)
         self.stage = Stage(self.server.scene, robot, sensors)
         self.look(q)
 
@@ -79,5 +80,18 @@ class Page:
         """Ends the page."""
         if self._gate is not None:
             self._gate.close()
-        with redirect_stdout(sys.stderr):
+        with _quiet():
             self.server.stop()
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keeps viser from printing its address, which is not always that of the page, and that it ends."""
+    import rich
+
+    console = rich.get_console()
+    before, console.quiet = console.quiet, True
+    try:
+        yield
+    finally:
+        console.quiet = before
