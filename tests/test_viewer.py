@@ -131,6 +131,16 @@ def test_the_time_line_of_the_page_moves_the_robot(page: ReplayView, browser: Br
     assert abs(float(page._slider.value) - PUSHED) < 0.1
 
 
+def test_play_goes_on_to_the_end_of_the_log(page: ReplayView, browser: Browser) -> None:
+    page.show(1.5)
+    browser.open(page.address)
+    button = "[...document.querySelectorAll('button')].find(it => it.innerText.includes('Play'))"
+    browser.wait_for(button)
+    browser.evaluate(f"{button}.click()")
+    end = float(page._time[-1])
+    browser.wait_for(lambda: float(page._slider.value) == pytest.approx(end) and not page._playing.is_set())
+
+
 @pytest.mark.parametrize(
     "more",
     [

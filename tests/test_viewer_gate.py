@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import socket
 import subprocess
 import sys
@@ -11,10 +13,11 @@ import urllib.error
 import urllib.request
 from collections.abc import Iterator
 from contextlib import suppress
+from pathlib import Path
 from urllib.parse import parse_qs, urlsplit
 
 import pytest
-from log_files import DT, arm, pushed
+from log_files import DT, arm, named_columns, pushed, write_csv
 from tools.browser import chromium
 from viewer_pages import free_port
 
@@ -301,6 +304,22 @@ def test_a_browser_with_the_token_shows_a_control_loop(request: pytest.FixtureRe
         browser.wait_for("document.body.innerText.includes('no contact')")
     with pytest.raises(OSError, match="refused"):
         socket.create_connection(("127.0.0.1", urlsplit(address).port or 0), timeout=5.0)
+
+
+def test_the_command_tells_the_address_with_the_token(tmp_path: Path) -> None:
+    log = pushed()[:100]
+    words = {"position": "pos", "velocity": "vel", "torque": "effort"}
+    columns = {"time": log.time, **named_columns(log, [str(k) for k in range(1, 8)], words)}
+    file = write_csv(tmp_path / "pushed.csv", columns)
+    command = [sys.executable, "-m", "contactsense.cli", "view", str(file), "--robot", "iiwa14"]
+    command += ["--host", "0.0.0.0", "--port", str(free_port())]
+    environment = {**os.environ, "CONTACTSENSE_TOKEN": TOKEN}
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment) as process:
+        assert process.stderr is not None
+        told = next(line for line in process.stderr if "shows the log" in line)
+        check_gate(told.split()[0], TOKEN)
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=60.0) == 0
 
 
 def test_a_place_that_cannot_be_listened_at_is_named() -> None:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import base64
 import json
+import os
 import shutil
+import signal
 import subprocess
 import tempfile
 import time
@@ -16,6 +18,7 @@ from typing import Any
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 # A page is there after so long [s], or it is not to be had: rendering without a graphics card is slow.
 PATIENCE = 60.0
+_ENDING = 15.0  # until it is made to end [s]
 _LONGEST = 100 * 1024 * 1024  # message of the browser [bytes]: a picture of the page
 
 
@@ -56,9 +59,13 @@ class Browser:
             stderr=subprocess.DEVNULL,
             start_new_session=True,
         )
-        port, path = self._port()
-        self._socket = connect(f"ws://127.0.0.1:{port}{path}", max_size=_LONGEST)
         self._number = 0
+        try:
+            port, path = self._port()
+            self._socket = connect(f"ws://127.0.0.1:{port}{path}", max_size=_LONGEST)
+        except BaseException:
+            self._end()
+            raise
         self._session: str | None = None
         target = self.call("Target.getTargets")["targetInfos"][0]["targetId"]
         self._session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
@@ -126,8 +133,15 @@ class Browser:
     def close(self) -> None:
         """Ends the browser."""
         self._socket.close()
+        self._end()
+
+    def _end(self) -> None:
         self.process.terminate()
-        self.process.wait()
+        try:
+            self.process.wait(timeout=_ENDING)
+        except subprocess.TimeoutExpired:
+            os.killpg(self.process.pid, signal.SIGKILL)
+            self.process.wait()
         self._folder.cleanup()
 
     def __enter__(self) -> Browser:

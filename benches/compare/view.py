@@ -109,8 +109,6 @@ class _Loop:
             Timing("contactsense, with a page", np.array(times[True])),
             Timing("contactsense, no page", np.array(times[False])),
         ]
-        size = min(len(timing.samples) for timing in timings)
-        timings = [Timing(timing.name, timing.samples[:size]) for timing in timings]
         return Comparison("view, iiwa14, a tick at 1 kHz", timings, max_tail_ratio=MAX_TAIL_RATIO)
 
     def _block(self, is_shown: bool, block: int, pace: Pace) -> list[float]:

@@ -24,7 +24,7 @@ def cloud_of(given: _core.ContactParticleFilter | _core.Particles | ArrayLike) -
         shares = weights / max(float(np.max(weights, initial=0.0)), np.finfo(float).tiny)
     else:
         try:
-            points = np.asarray(given, dtype=np.float64)
+            points = np.array(given, dtype=np.float64)  # the loop may change its own
         except (TypeError, ValueError) as cause:
             raise InputError("particles: must be a filter, its particles, or points (n, 3)") from cause
         if points.ndim != 2 or points.shape[1] != 3:
