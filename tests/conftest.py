@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import pytest
 from hypothesis import settings
 from robots import SHARED, shared_is_there
+from tools.browser import Browser, chromium
 
 # The same examples in every run; `--hypothesis-profile=explore` draws others and tells how to repeat them.
 settings.register_profile("repeatable", derandomize=True, deadline=None)
@@ -15,3 +18,14 @@ settings.load_profile("repeatable")
 def pytest_runtest_setup(item: pytest.Item) -> None:
     if item.get_closest_marker("shared") and not shared_is_there():
         pytest.skip(f"needs robots or logs that are not part of the project, in {SHARED}")
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """One tab for all tests; its page is small, as there is no graphics card."""
+    if chromium() is None:
+        pytest.skip("there is no Chromium")
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("websockets")
+    with Browser(1000, 600) as browser:
+        yield browser

@@ -33,8 +33,8 @@ SIGNATURES = {
     "replay": "log, monitor, *, on_progress=None",
     "replay_fleet": "logs, robot, folder, *, name=None, reading=None, monitor=None, ticks=False, "
     "engine='local', workers=None, address=None, on_progress=None",
-    "view": "monitor, *, port=8080",
-    "View.show": "q, report",
+    "view": "source, *, host='127.0.0.1', port=8080, token=None",
+    "View.show": "q, report, particles=None",
     "View.close": "",
     "Replay.to_parquet": "folder",
     "Replay.to_json_lines": "path",

@@ -11,7 +11,7 @@ from .machine import describe, use_one_core
 
 NAMES = (
     *("observer", "compensation", "monitor", "noisy", "contact_map", "closest", "rays", "particle_filter"),
-    "log",
+    *("log", "view"),
 )
 
 
@@ -41,6 +41,7 @@ def main() -> int:
         particle_filter,
         rays,
         table,
+        view,
     )
     from .timing import Pace
 
@@ -49,7 +50,18 @@ def main() -> int:
         return 2
     clock = time.perf_counter if arguments.wall else time.process_time
     pace = Pace(3, 0.002, 2, 2, clock, 12_000) if arguments.quick else Pace(60, 0.005, 20, 40, clock)
-    all_modules = (observer, compensation, monitor, noisy, contact_map, closest, rays, particle_filter, log)
+    all_modules = (
+        observer,
+        compensation,
+        monitor,
+        noisy,
+        contact_map,
+        closest,
+        rays,
+        particle_filter,
+        log,
+        view,
+    )
     modules = dict(zip(NAMES, all_modules, strict=True))
     comparisons = []
     for name in arguments.only or NAMES:

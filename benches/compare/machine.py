@@ -48,6 +48,20 @@ def all_cores() -> Iterator[None]:
         os.sched_setaffinity(0, pinned)
 
 
+@contextmanager
+def other_cores() -> Iterator[None]:
+    """Processes that are started meanwhile run on the other cores, if there are any."""
+    if not _allowed:
+        yield
+        return
+    pinned = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, _allowed - pinned or _allowed)
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, pinned)
+
+
 def describe() -> dict[str, str]:
     """The class of machine and the versions in use."""
     about = {

@@ -57,6 +57,10 @@ def _rows(comparison: Comparison) -> list[tuple[str, ...]]:
         limits.append(f">= {comparison.min_ratio:g}x")
     if comparison.max_worst_us is not None:
         limits.append(f"max <= {comparison.max_worst_us:g} us")
+    if comparison.max_tail_ratio is not None:
+        limits.append(
+            f"99.9 % is {comparison.tail_ratio:.2f}x <= {comparison.max_tail_ratio:g}x the second's"
+        )
     ends = ("", "", ", ".join(limits), VERDICTS[comparison.passed])
     task = comparison.task if comparison.unit == "us" else f"{comparison.task} [{comparison.unit}]"
     first = (task, ours.name, *_times(comparison, ours), *ends)
@@ -77,7 +81,8 @@ def _times(comparison: Comparison, timing: Timing) -> tuple[str, ...]:
 
 def has_tail(comparison: Comparison) -> bool:
     """Whether its samples are of single calls."""
-    return comparison.has_tail or comparison.max_worst_us is not None
+    limits = comparison.max_worst_us, comparison.max_tail_ratio
+    return comparison.has_tail or any(limit is not None for limit in limits)
 
 
 def _us(value: float) -> str:
@@ -112,5 +117,6 @@ def _comparison_json(comparison: Comparison) -> dict[str, Any]:
         "max_us": comparison.max_us,
         "min_ratio": comparison.min_ratio,
         "max_worst_us": comparison.max_worst_us,
+        "max_tail_ratio": comparison.max_tail_ratio,
         "passed": comparison.passed,
     }

@@ -70,6 +70,7 @@ class Comparison:
     max_us: float | None = None  # of ours
     min_ratio: float | None = None  # of the second to ours
     max_worst_us: float | None = None  # of our slowest call, where `samples` are of single calls
+    max_tail_ratio: float | None = None  # of our 99.9th percentile to the second's
     has_tail: bool = False  # whether `samples` are of single calls where nothing is asked of the slowest
     unit: str = "us"  # of samples and limits, where they are no times
 
@@ -83,12 +84,18 @@ class Comparison:
         return float(low), float(high)
 
     @property
+    def tail_ratio(self) -> float:
+        """Of the 99.9th percentiles: how many times as long as the second ours takes."""
+        return self.timings[0].tail[0] / self.timings[1].tail[0]
+
+    @property
     def passed(self) -> bool | None:
         """None where nothing is asked."""
-        if self.max_us is None and self.min_ratio is None and self.max_worst_us is None:
+        if all(it is None for it in (self.max_us, self.min_ratio, self.max_worst_us, self.max_tail_ratio)):
             return None
         fast = self.max_us is None or self.timings[0].median <= self.max_us
         fast = fast and (self.max_worst_us is None or self.timings[0].tail[1] <= self.max_worst_us)
+        fast = fast and (self.max_tail_ratio is None or self.tail_ratio <= self.max_tail_ratio)
         return fast and (self.min_ratio is None or self.ratio(self.timings[1]) >= self.min_ratio)
 
 

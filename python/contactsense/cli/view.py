@@ -11,7 +11,6 @@ from typing import Annotated
 
 import typer
 
-from .. import ContactMap
 from .._extras import require
 from ..errors import InputError
 from ..offline import replay
@@ -43,22 +42,33 @@ def command(
     end: Annotated[
         float | None, typer.Option(help="With --html: to so many seconds (default: a minute of the log).")
     ] = None,
+    host: Annotated[
+        str,
+        typer.Option(help="What serves the page: this machine only, or 0.0.0.0 for all who know the token."),
+    ] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=1, max=65535, help="Port of the page.")] = 8080,
+    token: Annotated[
+        str | None,
+        typer.Option(
+            envvar="CONTACTSENSE_TOKEN",
+            help="What a browser has to know; random where others than this machine reach the page.",
+        ),
+    ] = None,
     open_page: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
 ) -> None:
     """Show a log in the browser: the robot, its contacts, where they can be, and the torques."""
     require("view", "viser")
-    from ..viewer.log_page import LogPage
-    from ..viewer.moment import ReplayMoments
+    from ..viewer.place import place_of
+    from ..viewer.replay_view import replay_view
 
+    place = place_of(host, port, token)
     if html is not None and not html.resolve().parent.is_dir():
         raise InputError(f"html: cannot write '{html}': there is no folder '{html.resolve().parent}'")
     loaded = options.load_robot()
     measured = options.load_log(log, loaded, monitor.sensors())
     with progress_bar(log.name, False) as show:
         result = replay(measured, monitor_of(measured, loaded, **monitor.arguments()), on_progress=show)
-    moments = ReplayMoments(result, None if loaded.floating_base else ContactMap(loaded))
-    page = LogPage(log.name, result, moments, port)
+    page = replay_view(log.name, result, place)
     try:
         if html is not None:
             page.to_html(html, start, start + _MINUTE if end is None else end)

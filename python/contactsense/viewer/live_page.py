@@ -9,34 +9,40 @@ import os
 import pickle
 import sys
 import threading
+import time
+from collections.abc import Sequence
 from contextlib import redirect_stdout
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
-
-import numpy as np
 
 from .. import _core
-from .moment import Moment, Touch, likelihood_of
-from .page import FRAMES, address_of, close_page, open_page
+from ..errors import InputError
+from .legend import legend
+from .moment import posterior_of
+from .page import Page
 from .slot import Slot
-from .stage import Stage
+from .torque_plot import RecentTorques
 
-_NOWHERE = np.zeros((0, 3)), np.zeros(0)
+# Between two looks at the slot [s]: short beside the time between two instants, so that none is missed.
+_LOOK = 0.004
 
 
 def main() -> None:
     """Shows what is in the slot until stdin ends."""
-    robot, path, port = pickle.load(sys.stdin.buffer)
-    slot = Slot(Path(path), robot)  # before the address is told: its file is then removed
+    robot, sensors, path, place = pickle.load(sys.stdin.buffer)
+    slot = Slot(Path(path), robot, len(sensors))  # before the address is told: its file is then removed
     ended = threading.Event()
     threading.Thread(target=_end_with_stdin, args=(ended,), daemon=True).start()
-    server, stage = open_page("live", robot, robot.neutral(), port)
-    text = server.gui.add_markdown("")
-    print(address_of(server), flush=True)
+    try:
+        page = Page("live", robot, robot.neutral(), place, sensors)
+    except InputError as error:
+        print(error, flush=True)
+        return
+    print(page.address, flush=True)
     contact_map = None if robot.floating_base else _core.ContactMap(robot)
     with redirect_stdout(sys.stderr):  # nobody reads on
-        _show(server, stage, text, slot, contact_map, ended)
-    close_page(server)
+        _show(page, slot, robot, sensors, contact_map, ended)
+    page.close()
 
 
 def _end_with_stdin(ended: threading.Event) -> None:
@@ -47,35 +53,34 @@ def _end_with_stdin(ended: threading.Event) -> None:
 
 
 def _show(
-    server: Any,
-    stage: Stage,
-    text: Any,
+    page: Page,
     slot: Slot,
+    robot: _core.Robot,
+    sensors: Sequence[_core.ForceTorqueSensor],
     contact_map: _core.ContactMap | None,
     ended: threading.Event,
 ) -> None:
+    text = page.server.gui.add_markdown("")
+    torques = RecentTorques(page.server.gui, robot)
+    page.server.gui.add_html(legend(has_sensors=bool(sensors), has_particles=True))
     shown = 0
-    while not ended.wait(1.0 / FRAMES):
-        newest = slot.read()
-        if newest is None or newest[0] == shown:
+    while not ended.wait(_LOOK):
+        if slot.count == shown:
             continue
-        shown, q, torque, touches = newest
-        places = _NOWHERE
-        if contact_map is not None and len(touches) == 1:
-            found = contact_map.evaluate(q, torque)
-            places = found.points, likelihood_of(found)
-        with server.atomic():
-            stage.show(Moment(q, touches, *places))
-            text.content = _told(touches)
-
-
-def _told(touches: tuple[Touch, ...]) -> str:
-    lines = [
-        f"- {touch.link} ({100.0 * touch.probability:.0f} %), {np.linalg.norm(touch.force):.1f} N, "
-        f"{'located' if touch.located else 'not located'}"
-        for touch in touches
-    ]
-    return "\n".join(lines) or "no contact"
+        newest = slot.read()
+        if newest is None:
+            continue
+        if not shown:
+            page.look(newest[2].q)
+        shown, torque, moment = newest
+        # Particles take the place of the posterior, which would hide them.
+        is_sought = len(moment.touches) == 1 and not len(moment.particles.points)
+        if contact_map is not None and is_sought:
+            moment = replace(moment, posterior=posterior_of(contact_map.evaluate(moment.q, torque)))
+        with page.server.atomic():
+            page.stage.show(moment)
+            text.content = moment.told(sensors)
+            torques.add(time.monotonic(), torque, bool(moment.touches))
 
 
 if __name__ == "__main__":

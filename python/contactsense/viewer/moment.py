@@ -1,14 +1,14 @@
-"""What a page shows of one instant, and where it comes from in a replay."""
+"""What a page shows of one instant."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..offline import Replay
 
 Rows = NDArray[np.float64]
 
@@ -35,59 +35,58 @@ class Touch:
 
 
 @dataclass(frozen=True, eq=False)
+class Cloud:
+    """Points on the robot.
+
+    Args:
+        points: `(n, 3)`, world frame [m].
+        shares: `(n,)`, the likelihood or weight of each, as a share of the greatest.
+    """
+
+    points: NDArray[np.floating]
+    shares: NDArray[np.floating]
+
+
+NOWHERE = Cloud(np.zeros((0, 3)), np.zeros(0))
+NO_WRENCHES = np.zeros((0, 6))
+
+
+@dataclass(frozen=True, eq=False)
 class Moment:
     """One instant.
 
     Args:
         q: `(nq,)`, configuration.
         touches: the contacts.
-        places: `(n, 3)`, where a single contact can be, world frame [m].
-        likelihood: `(n,)`, of each place, as a share of the greatest.
+        posterior: where a single contact can be.
+        particles: of a particle filter.
+        wrenches: `(n_sensors, 6)`, the external wrench that each sensor sees, at its origin, world axes
+            [N, Nm]; NaN where it has no reading.
     """
 
     q: Rows
     touches: tuple[Touch, ...]
-    places: Rows
-    likelihood: Rows
+    posterior: Cloud = NOWHERE
+    particles: Cloud = NOWHERE
+    wrenches: Rows = field(default_factory=lambda: NO_WRENCHES)
+
+    def told(self, sensors: Sequence[_core.ForceTorqueSensor]) -> str:
+        """Contacts and sensors as a list, in Markdown."""
+        lines = []
+        for touch in self.touches:
+            size = float(np.linalg.norm(touch.force))
+            force = f", {size:.1f} N" if np.isfinite(size) else ""
+            share = f" ({100.0 * touch.probability:.0f} %)" if np.isfinite(touch.probability) else ""
+            lines.append(f"- {touch.link}{share}{force}, {'located' if touch.located else 'not located'}")
+        lines = lines or ["- no contact"]
+        for sensor, wrench in zip(sensors, self.wrenches, strict=True):
+            sizes = np.linalg.norm(wrench[:3]), np.linalg.norm(wrench[3:])
+            known = f"{sizes[0]:.1f} N, {sizes[1]:.1f} Nm" if np.all(np.isfinite(sizes)) else "no reading"
+            lines.append(f"- sensor {sensor.name}: {known}")
+        return "\n".join(lines)
 
 
-class ReplayMoments:
-    """The instants of a replay, by row."""
-
-    def __init__(self, result: Replay, contact_map: _core.ContactMap | None) -> None:
-        self._result, self._map = result, contact_map
-        ticks = result.contact_ticks
-        rows = np.arange(len(result.ticks["time"]) + 1)
-        # Contacts of row k are those from first[k] to first[k + 1].
-        self._first = np.searchsorted(ticks["row"], rows)
-
-    def __len__(self) -> int:
-        return len(self._result.ticks["time"])
-
-    def at(self, row: int) -> Moment:
-        """The instant of a row."""
-        ticks = self._result.contact_ticks
-        touches = tuple(
-            Touch(
-                str(ticks["link"][k]),
-                float(ticks["link_probability"][k]),
-                bool(ticks["located"][k]),
-                ticks["point"][k],
-                ticks["force"][k],
-                float(ticks["region_radius"][k]),
-            )
-            for k in range(self._first[row], self._first[row + 1])
-        )
-        places, likelihood = self._places(row) if len(touches) == 1 else (np.zeros((0, 3)), np.zeros(0))
-        return Moment(self._result.log.q[row], touches, places, likelihood)
-
-    def _places(self, row: int) -> tuple[Rows, Rows]:
-        if self._map is None:
-            return np.zeros((0, 3)), np.zeros(0)
-        found = self._map.evaluate(self._result.log.q[row], self._result.ticks["external_torque"][row])
-        return found.points, likelihood_of(found)
-
-
-def likelihood_of(found: _core.MapEstimate) -> Rows:
-    """Of each place of a map, as a share of the greatest."""
-    return np.exp(found.log_posterior - np.max(found.log_posterior, initial=-np.inf))
+def posterior_of(found: _core.MapEstimate) -> Cloud:
+    """The places of a map."""
+    greatest = np.max(found.log_posterior, initial=-np.inf)
+    return Cloud(found.points, np.exp(found.log_posterior - greatest))

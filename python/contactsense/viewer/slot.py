@@ -10,12 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from .moment import Touch
+from .moment import Cloud, Moment, Touch
 
 Rows = NDArray[np.float64]
 
 # As many contacts are shown.
 MOST = 8
+# As many particles are shown: enough to see where they are, and little to send.
+MOST_PARTICLES = 10_000
 # Of a contact: number of its link, probability, located, radius, point, force.
 _FIELDS = 10
 
@@ -27,28 +29,31 @@ class Slot:
     another one after it has read, has read in vain, and tries again later.
     """
 
-    def __init__(self, path: Path, robot: _core.Robot, *, creates: bool = False) -> None:
-        size = 8 * (2 + robot.nq + robot.nv + MOST * _FIELDS)
+    def __init__(self, path: Path, robot: _core.Robot, sensors: int = 0, *, creates: bool = False) -> None:
+        parts = [1, 2, robot.nq, robot.nv, MOST * _FIELDS, 6 * sensors]
+        # Particles are of single precision: two numbers in the room of one.
+        size = 8 * (sum(parts) + 2 * MOST_PARTICLES)
         if creates:
             path.write_bytes(bytes(size))
         self._links = list(robot.link_names)
         self._number_of = {link: k for k, link in enumerate(self._links)}
         with path.open("r+b") as file:
             self._memory = mmap.mmap(file.fileno(), size)
-        numbers = np.frombuffer(self._memory, dtype=np.float64)
+        numbers = np.frombuffer(self._memory, dtype=np.float64, count=sum(parts))
         self._count = np.frombuffer(self._memory, dtype=np.int64, count=1)
-        self._contacts = numbers[1:2]
-        self._q = numbers[2 : 2 + robot.nq]
-        self._torque = numbers[2 + robot.nq : 2 + robot.nq + robot.nv]
-        self._touches = numbers[-MOST * _FIELDS :].reshape(MOST, _FIELDS)
+        _, self._sizes, self._q, self._torque, touches, wrenches = np.split(numbers, np.cumsum(parts)[:-1])
+        self._touches, self._wrenches = touches.reshape(MOST, _FIELDS), wrenches.reshape(sensors, 6)
+        particles = np.frombuffer(self._memory, dtype=np.float32, offset=8 * sum(parts))
+        points, self._shares = np.split(particles, [3 * MOST_PARTICLES])
+        self._points = points.reshape(MOST_PARTICLES, 3)
 
-    def write(self, q: Rows, report: _core.ContactReport) -> None:
-        """Puts an instant in place of the one before."""
+    def write(self, q: Rows, report: _core.ContactReport, particles: Cloud | None = None) -> None:
+        """Puts an instant in place of the one before; it has at most `MOST_PARTICLES`."""
         self._count[0] += 1
         self._q[:] = q
         self._torque[:] = report.external_torque
         contacts = report.contacts[:MOST]
-        self._contacts[0] = len(contacts)
+        self._sizes[0] = len(contacts)
         for k, contact in enumerate(contacts):
             link = contact.link
             row = self._touches[k]
@@ -56,21 +61,35 @@ class Slot:
             row[1] = contact.link_probabilities.get(link, np.nan)
             row[2], row[3] = contact.located, contact.region_radius
             row[4:7], row[7:10] = contact.point, contact.force
+        if len(self._wrenches):
+            self._wrenches[:] = report.wrenches
+        number = 0 if particles is None else len(particles.points)
+        self._sizes[1] = number
+        if particles is not None:
+            self._points[:number], self._shares[:number] = particles.points, particles.shares
         self._count[0] += 1
 
-    def read(self) -> tuple[int, Rows, Rows, tuple[Touch, ...]] | None:
-        """Number of writings, configuration, external torque and contacts; None while these change."""
-        before = int(self._count[0])
+    @property
+    def count(self) -> int:
+        """Changes with every writing."""
+        return int(self._count[0])
+
+    def read(self) -> tuple[int, Rows, Moment] | None:
+        """Count, external torque and what was written; None while this changes."""
+        before = self.count
         if before % 2 or not before:
             return None
-        q, torque, rows = self._q.copy(), self._torque.copy(), self._touches[: int(self._contacts[0])].copy()
-        if int(self._count[0]) != before:
+        q, torque, wrenches = self._q.copy(), self._torque.copy(), self._wrenches.copy()
+        rows = self._touches[: int(self._sizes[0])].copy()
+        number = int(self._sizes[1])
+        particles = Cloud(self._points[:number].copy(), self._shares[:number].copy())
+        if self.count != before:
             return None
         touches = tuple(
             Touch(self._links[int(row[0])], float(row[1]), bool(row[2]), row[4:7], row[7:10], float(row[3]))
             for row in rows
         )
-        return before, q, torque, touches
+        return before, torque, Moment(q, touches, particles=particles, wrenches=wrenches)
 
 
 def slot_file() -> Path:

@@ -1,9 +1,10 @@
-"""A control loop in the browser."""
+"""A control loop or a log in the browser."""
 
 from __future__ import annotations
 
+import threading
 import time
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,21 +12,22 @@ from numpy.typing import ArrayLike
 from .. import _core
 from .._extras import require
 from ..errors import InputError
+from ..offline import Replay
 
 if TYPE_CHECKING:
+    from .replay_view import ReplayView
     from .slot import Slot
 
-# What is shown each second at most.
-_FRAMES = 30.0
-# The page is there after so long [s], or it is not to be had.
-_PATIENCE = 60.0
+# Between two instants that are shown [s]: a little less than a thirtieth, as some come late.
+_BETWEEN = 1.0 / 32.0
 
 
 class View:
     """The page of a control loop, in a process of its own; made by `view`.
 
-    It costs a control tick about as much as reading the clock, and some microseconds in 30 ticks a second. It
-    waits for nothing: what the page cannot show in time is not shown. It can be used as a context manager.
+    It costs a control tick about as much as reading the clock. In about 30 ticks a second it also hands the
+    instant on to a thread, which writes it for the page while the loop waits for its next tick. It waits for
+    nothing: what the page cannot show in time is not shown. It can be used as a context manager.
 
     Args:
         slot: memory that the page reads.
@@ -43,35 +45,79 @@ class View:
     """
 
     def __init__(self, slot: Slot, process: Any, address: str, nq: int) -> None:
+        from .particles import cloud_of  # here: in the loop it would take milliseconds once
+
         self._slot, self._process, self._address, self._nq = slot, process, address, nq
+        self._cloud_of = cloud_of
         self._due = 0.0
+        # A queue of one, and a lock that is free while there is something in it.
+        self._newest: tuple[Any, ...] = ()
+        self._empty = threading.Lock()
+        self._empty.acquire()
+        self._failure: Exception | None = None
+        threading.Thread(target=self._write, daemon=True).start()
 
     @property
     def address(self) -> str:
-        """Where the page is: on this machine only."""
+        """Where the page is, with the token where it has one."""
         return self._address
 
-    def show(self, q: ArrayLike, report: _core.ContactReport) -> None:
+    def show(
+        self,
+        q: ArrayLike,
+        report: _core.ContactReport,
+        particles: _core.ContactParticleFilter | _core.Particles | ArrayLike | None = None,
+    ) -> None:
         """Shows an instant, unless the one before is as good as new.
 
         Args:
             q: `(nq,)`, configuration.
-            report: what the monitor says of it.
+            report: of the monitor for this instant.
+            particles: a `ContactParticleFilter`, whose particles are read only where the instant is shown;
+                its `particles`; or points `(n, 3)`, world frame [m]. Of more than 10,000, so many at even
+                distances in their order are shown.
 
         Raises:
-            InputError: `q` has the wrong shape.
+            InputError: an argument has the wrong shape, or the report of an earlier instant was of another
+                robot.
         """
         now = time.monotonic()
         if now < self._due:
             return
-        self._due = now + 1.0 / _FRAMES
-        position = np.asarray(q, dtype=np.float64)
+        # As often as is due on average, also where ticks are late; after a pause it begins anew.
+        self._due = max(self._due, now - _BETWEEN) + _BETWEEN
+        if self._failure is not None:
+            raise InputError("report: is not of the robot of the page") from self._failure
+        position = np.array(q, dtype=np.float64)  # the loop may change its own
         if position.shape != (self._nq,):
             raise InputError(f"q: must be ({self._nq},), not {position.shape}")
-        self._slot.write(position, report)
+        cloud = None if particles is None else self._cloud_of(particles)
+        self._newest = position, report, cloud
+        if self._empty.locked():
+            self._empty.release()
+
+    def _write(self) -> None:
+        """Writes what is handed on until that is nothing.
+
+        It gets the interpreter when the loop sleeps or reads the robot, after its tick. In the tick it would
+        take tens of microseconds: what runs so rarely is in no cache.
+        """
+        while True:
+            self._empty.acquire()
+            newest = self._newest
+            if not newest:
+                return
+            try:
+                self._slot.write(*newest)
+            except Exception as failure:
+                self._failure = failure
+                return
 
     def close(self) -> None:
         """Ends the page."""
+        self._newest = ()
+        if self._empty.locked():
+            self._empty.release()
         if self._process.poll() is None:
             self._process.stdin.close()
             self._process.wait()
@@ -84,18 +130,41 @@ class View:
         self.close()
 
 
-def view(monitor: _core.ContactMonitor, *, port: int = 8080) -> View:
-    """Opens a page in the browser that shows what a monitor says while a robot runs.
+@overload
+def view(
+    source: _core.ContactMonitor, *, host: str = ..., port: int = ..., token: str | None = ...
+) -> View: ...
 
-    The page is served to this machine only. It shows the robot, its contacts with their forces, and where the
-    torques of the instant allow a single contact.
+
+@overload
+def view(source: Replay, *, host: str = ..., port: int = ..., token: str | None = ...) -> ReplayView: ...
+
+
+def view(
+    source: _core.ContactMonitor | Replay,
+    *,
+    host: str = "127.0.0.1",
+    port: int = 8080,
+    token: str | None = None,
+) -> View | ReplayView:
+    """Opens a page in the browser that shows a control loop or a log.
+
+    It shows the robot, its contacts with their forces, where the torques of the instant allow a single
+    contact, and what force/torque sensors measure; of a log also a time line, the torques and a table of the
+    contacts.
 
     Args:
-        monitor: its robot is shown.
+        source: a `ContactMonitor`, whose reports `View.show` shows while the robot runs, or a `Replay`.
+        host: address that the page is served at: one that only this machine reaches ("127.0.0.1", "::1",
+            "localhost"), or one that others reach ("0.0.0.0" for all addresses of the machine), who then need
+            the token. Nothing is encrypted.
         port: of the page; the next free one is taken where it is in use.
+        token: what a browser has to know, at least 16 letters, digits, "-" or "_". None: nothing where only
+            this machine reaches the page, and something random elsewhere. The address of the page has it.
 
     Returns:
-        A `View`, whose `show` is called after `ContactMonitor.update`.
+        A `View`, whose `show` is called after `ContactMonitor.update`; of a `Replay` a
+        `contactsense.viewer.replay_view.ReplayView`.
 
     Raises:
         InputError: an argument is wrong, or the page cannot be opened.
@@ -110,38 +179,19 @@ def view(monitor: _core.ContactMonitor, *, port: int = 8080) -> View:
         ...     print(error)
         port: must be from 1 to 65535, not 70000
     """
-    if not isinstance(monitor, _core.ContactMonitor):
-        raise InputError(f"monitor: expected a contactsense.ContactMonitor, got {type(monitor).__name__}")
-    if not 1 <= port <= 65535:
-        raise InputError(f"port: must be from 1 to 65535, not {port}")
-    require("view", "viser")
     # These take milliseconds that programs without a page do not need.
-    import pickle
-    import select
-    import subprocess
-    import sys
+    from .place import place_of
 
-    from .slot import Slot, slot_file
-
-    file = slot_file()
-    try:
-        slot = Slot(file, monitor.robot, creates=True)
-        process = subprocess.Popen(
-            [sys.executable, "-m", "contactsense.viewer.live_page"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
+    if not isinstance(source, _core.ContactMonitor | Replay):
+        raise InputError(
+            f"source: must be a contactsense.ContactMonitor or Replay, not {type(source).__name__}"
         )
-        assert process.stdin is not None
-        assert process.stdout is not None
-        process.stdin.write(pickle.dumps((monitor.robot, str(file), port)))
-        process.stdin.flush()
-        ready, _, _ = select.select([process.stdout], [], [], _PATIENCE)
-        address = process.stdout.readline().decode().strip() if ready else ""
-    finally:
-        file.unlink()  # it lives on for those that have it open
-    page = View(slot, process, address, monitor.robot.nq)
-    if not address:
-        page.close()
-        raise InputError("port: the page could not be opened")
-    return page
+    place = place_of(host, port, token)
+    require("view", "viser")
+    if isinstance(source, Replay):
+        from .replay_view import replay_view
+
+        return replay_view(source.robot.name, source, place)
+    from .live import live_view
+
+    return live_view(source, place)

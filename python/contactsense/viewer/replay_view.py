@@ -11,28 +11,43 @@ from typing import Any
 
 import numpy as np
 
-from .._pictures import JOINTS
+from .. import _core
 from .._tables import number_text
 from ..errors import InputError
 from ..offline import Replay, ReplayedContact
 from ..offline.whole import whole_file
-from .moment import ReplayMoments
-from .page import FRAMES, address_of, close_page, open_page
+from .legend import legend
+from .page import FRAMES, Page
+from .place import Place
+from .replay_moments import ReplayMoments
+from .torque_plot import TorquePlot
 
 # Points of a plot, which are more than its pixels.
 _POINTS = 1500
 
 
-class LogPage:
-    """A page in the browser, on this machine only, until it is closed."""
+class ReplayView:
+    """The page of a log, until it is closed; made by `contactsense.view`.
 
-    def __init__(self, title: str, result: Replay, moments: ReplayMoments, port: int = 8080) -> None:
+    It can be used as a context manager.
+
+    Args:
+        title: of the page.
+        result: what is shown.
+        moments: of it.
+        place: where the page is served.
+
+    Raises:
+        InputError: the log has no rows, or the page cannot be opened.
+    """
+
+    def __init__(self, title: str, result: Replay, moments: ReplayMoments, place: Place) -> None:
         if not len(moments):
             raise InputError("log: has no rows to show")
-        self._moments = moments
+        self._moments, self._sensors = moments, result.sensors
         self._time = result.ticks["time"] - result.ticks["time"][0]
-        self._server, self._stage = open_page(title, result.robot, result.log.q[0], port)
-        self._lock = threading.Lock()
+        self._page = Page(title, result.robot, result.log.q[0], place, result.sensors)
+        self._lock = threading.RLock()
         self._playing = threading.Event()
         self._closed = threading.Event()
         self._build(title, result)
@@ -41,8 +56,8 @@ class LogPage:
 
     @property
     def address(self) -> str:
-        """Where the page is."""
-        return address_of(self._server)
+        """Where the page is, with the token where it has one."""
+        return self._page.address
 
     def show(self, seconds: float) -> None:
         """Shows the row at a time from the log's start."""
@@ -59,36 +74,52 @@ class LogPage:
             raise InputError(
                 f"start: must be before end, and before the end of the log, {self._time[-1]:g} s"
             )
-        serializer = self._server.get_scene_serializer()
-        for seconds in times:
-            self._draw(float(seconds))
-            serializer.insert_sleep(1.0 / FRAMES)
+        with self._lock:
+            serializer = self._page.server.get_scene_serializer()
+            for seconds in times:
+                self._draw(float(seconds))
+                serializer.insert_sleep(1.0 / FRAMES)
+            text = serializer.as_html()
+            self._draw(float(self._slider.value))
         with whole_file(path) as file:
-            file.write_text(serializer.as_html(), encoding="utf-8")
+            file.write_text(text, encoding="utf-8")
 
     def _draw(self, seconds: float) -> None:
         row = min(int(np.searchsorted(self._time, seconds)), len(self._time) - 1)
-        with self._lock, self._server.atomic():
-            self._stage.show(self._moments.at(row))
+        with self._lock, self._page.server.atomic():
+            moment = self._moments.at(row)
+            self._page.stage.show(moment)
+            self._now.content = moment.told(self._sensors)
+
+    def _follow(self, _: object) -> None:
+        with self._lock:  # first: what waits longest would draw last, and what is no longer wanted
+            self._draw(float(self._slider.value))
 
     def close(self) -> None:
         """Ends the page."""
         self._closed.set()
-        close_page(self._server)
+        self._page.close()
+
+    def __enter__(self) -> ReplayView:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
     def _build(self, title: str, result: Replay) -> None:
-        gui: Any = self._server.gui
-        gui.configure_theme(
-            control_layout="fixed", control_width="large", show_logo=False, show_share_button=False
-        )
+        gui: Any = self._page.server.gui
         gui.add_markdown(f"**{title}**: {len(result.contacts)} contacts in {self._time[-1]:.1f} s")
-        length = float(self._time[-1]) or 1.0
+        length = round(float(self._time[-1]), 3) or 1.0  # [s]: a label of the slider
         self._slider = gui.add_slider("time [s]", 0.0, length, min(length, 0.001), 0.0)
-        self._slider.on_update(lambda _: self._draw(float(self._slider.value)))
+        self._slider.on_update(self._follow)
         button = gui.add_button("Play / pause")
         button.on_click(lambda _: self._playing.clear() if self._playing.is_set() else self._playing.set())
-        _add_torques(gui, self._time, result)
+        self._now = gui.add_markdown("")
+        every = max(1, len(self._time) // _POINTS)
+        columns = [self._time, result.ticks["external_torque"], result.ticks["collision"]]
+        TorquePlot(gui, result.robot, "t [s]").show(*(column[::every] for column in columns))
         gui.add_html(_table(result.contacts, float(result.ticks["time"][0])))
+        gui.add_html(legend(has_sensors=bool(result.sensors), has_particles=False))
 
     def _play(self) -> None:
         """Moves the time line on, as fast as the log went."""
@@ -102,37 +133,22 @@ class LogPage:
                         self._playing.clear()
 
 
-def _add_torques(gui: Any, seconds: Any, result: Replay) -> None:
-    from viser import uplot
+def replay_view(title: str, result: Replay, place: Place) -> ReplayView:
+    """The page of a log; a single contact of an arm has its posterior.
 
-    every = max(1, len(seconds) // _POINTS)
-    torques = result.ticks["external_torque"][::every]
-    names = result.robot.joint_names
-    # Bars from bottom to top where there is contact.
-    bounds = 1.1 * min(0.0, float(torques.min())), 1.1 * max(1.0, float(torques.max()))
-    contact = np.where(result.ticks["collision"][::every], bounds[1], bounds[0])
-    bars = uplot.Series(label="contact", fill="rgba(213,94,0,0.2)", width=0, fillTo=bounds[0])
-    series = [uplot.Series(label="t [s]"), bars]
-    for k in range(torques.shape[1]):
-        # Six variables of a floating base have one joint.
-        label = names[k] if len(names) == torques.shape[1] else str(k)
-        series.append(uplot.Series(label=label, stroke=JOINTS[k % len(JOINTS)], width=1))
-    gui.add_uplot(
-        (seconds[::every].copy(), contact, *torques.T.copy()),
-        tuple(series),
-        title="External torque [Nm]; contacts shaded",
-        scales={"x": uplot.Scale(time=False), "y": uplot.Scale(range=bounds)},
-        legend=uplot.Legend(show=torques.shape[1] <= len(JOINTS)),
-        aspect=1.5,
-    )
+    Raises:
+        InputError: the log has no rows, or the page cannot be opened.
+    """
+    contact_map = None if result.robot.floating_base else _core.ContactMap(result.robot)
+    return ReplayView(title, result, ReplayMoments(result, contact_map), place)
 
 
 def _table(contacts: Sequence[ReplayedContact], start: float) -> str:
     """The contacts as a table of HTML."""
-    rows = [("from, to [s]", "link", "prob. [%]", "90 % [cm]", "located", "peak [N]")]
+    rows = [("time [s]", "link", "prob. [%]", "90 % [cm]", "located", "peak [N]")]
     rows += [
         (
-            f"{contact.start - start:.2f}, {contact.end - start:.2f}",
+            f"{contact.start - start:.2f} to {contact.end - start:.2f}",
             contact.link,
             number_text(100.0 * contact.link_probability, 0),
             number_text(100.0 * contact.region_radius, 1),
@@ -141,6 +157,9 @@ def _table(contacts: Sequence[ReplayedContact], start: float) -> str:
         )
         for contact in contacts
     ]
-    cells = ("".join(f'<td style="padding:1px 8px">{escape(cell)}</td>' for cell in row) for row in rows)
+    cells = (
+        "".join(f'<td style="padding:1px 4px;white-space:nowrap">{escape(cell)}</td>' for cell in row)
+        for row in rows
+    )
     body = "".join(f"<tr>{row}</tr>" for row in cells)
     return f'<table style="font-size:12px">{body}</table>'
