@@ -153,6 +153,44 @@ cs_status cs_robot_from_urdf(const char *path, const cs_urdf_options *options, c
 // `robot` is NULL, or was made by `cs_robot_from_urdf` and not freed before.
 void cs_robot_free(cs_robot *robot);
 
+// Numbers in a configuration `q`.
+//
+// # Safety
+// `robot` is NULL, which gives 0, or lives.
+size_t cs_robot_nq(const cs_robot *robot);
+
+// Numbers in a velocity `v`, and in an external torque.
+//
+// # Safety
+// `robot` is NULL, which gives 0, or lives.
+size_t cs_robot_nv(const cs_robot *robot);
+
+// Numbers in a motor torque `tau`: without those of a floating base.
+//
+// # Safety
+// `robot` is NULL, which gives 0, or lives.
+size_t cs_robot_ntau(const cs_robot *robot);
+
+// The name of a moving joint, in the order of `v`. NULL beyond the last one; lives as long as the robot.
+//
+// # Safety
+// `robot` is NULL or lives.
+const char *cs_robot_joint_name(const cs_robot *robot,
+                                size_t index);
+
+// The name of a link, by the index that contacts have. NULL beyond the last one; lives as long as the robot.
+//
+// # Safety
+// `robot` is NULL or lives.
+const char *cs_robot_link_name(const cs_robot *robot,
+                               size_t index);
+
+// What is unusual about the description. NULL beyond the last one; lives as long as the robot.
+//
+// # Safety
+// `robot` is NULL or lives.
+const char *cs_robot_warning(const cs_robot *robot, size_t index);
+
 // The defaults, for calls every `dt` seconds.
 cs_monitor_options cs_monitor_options_default(double dt);
 

@@ -98,53 +98,66 @@ pub unsafe extern "C" fn cs_robot_free(robot: *mut cs_robot) {
     }
 }
 
-macro_rules! counts {
-    ($($(#[$doc:meta])* $name:ident = $count:expr;)*) => {$(
-        $(#[$doc])*
-        ///
-        /// # Safety
-        /// `robot` is NULL, which gives 0, or lives.
-        #[no_mangle]
-        pub unsafe extern "C" fn $name(robot: *const cs_robot) -> usize {
-            // SAFETY: the caller's promise.
-            let count: fn(&cs_robot) -> usize = $count;
-            // SAFETY: as above.
-            unsafe { robot.as_ref() }.map_or(0, count)
-        }
-    )*};
+/// Numbers in a configuration `q`.
+///
+/// # Safety
+/// `robot` is NULL, which gives 0, or lives.
+#[no_mangle]
+pub unsafe extern "C" fn cs_robot_nq(robot: *const cs_robot) -> usize {
+    // SAFETY: the caller's promise.
+    unsafe { robot.as_ref() }.map_or(0, |robot| robot.robot.nq())
 }
 
-counts! {
-    /// Numbers in a configuration `q`.
-    cs_robot_nq = |robot| robot.robot.nq();
-    /// Numbers in a velocity `v`, and in an external torque.
-    cs_robot_nv = |robot| robot.robot.nv();
-    /// Numbers in a motor torque `tau`: without those of a floating base.
-    cs_robot_ntau = |robot| robot.robot.nv() - robot.robot.unactuated();
+/// Numbers in a velocity `v`, and in an external torque.
+///
+/// # Safety
+/// `robot` is NULL, which gives 0, or lives.
+#[no_mangle]
+pub unsafe extern "C" fn cs_robot_nv(robot: *const cs_robot) -> usize {
+    // SAFETY: the caller's promise.
+    unsafe { robot.as_ref() }.map_or(0, |robot| robot.robot.nv())
 }
 
-macro_rules! names {
-    ($($(#[$doc:meta])* $name:ident = $field:ident;)*) => {$(
-        $(#[$doc])*
-        ///
-        /// NULL beyond the last one. Lives as long as the robot.
-        ///
-        /// # Safety
-        /// `robot` is NULL or lives.
-        #[no_mangle]
-        pub unsafe extern "C" fn $name(robot: *const cs_robot, index: usize) -> *const c_char {
-            // SAFETY: the caller's promise.
-            let name = unsafe { robot.as_ref() }.and_then(|robot| robot.$field.get(index));
-            name.map_or(ptr::null(), |name| name.as_ptr())
-        }
-    )*};
+/// Numbers in a motor torque `tau`: without those of a floating base.
+///
+/// # Safety
+/// `robot` is NULL, which gives 0, or lives.
+#[no_mangle]
+pub unsafe extern "C" fn cs_robot_ntau(robot: *const cs_robot) -> usize {
+    // SAFETY: the caller's promise.
+    unsafe { robot.as_ref() }.map_or(0, |robot| robot.robot.nv() - robot.robot.unactuated())
 }
 
-names! {
-    /// The name of a moving joint, in the order of `v`.
-    cs_robot_joint_name = joints;
-    /// The name of a link, by the index that contacts have.
-    cs_robot_link_name = links;
-    /// What is unusual about the description.
-    cs_robot_warning = warnings;
+/// The name of a moving joint, in the order of `v`. NULL beyond the last one; lives as long as the robot.
+///
+/// # Safety
+/// `robot` is NULL or lives.
+#[no_mangle]
+pub unsafe extern "C" fn cs_robot_joint_name(robot: *const cs_robot, index: usize) -> *const c_char {
+    // SAFETY: the caller's promise.
+    text_at(unsafe { robot.as_ref() }.map(|robot| &robot.joints), index)
+}
+
+/// The name of a link, by the index that contacts have. NULL beyond the last one; lives as long as the robot.
+///
+/// # Safety
+/// `robot` is NULL or lives.
+#[no_mangle]
+pub unsafe extern "C" fn cs_robot_link_name(robot: *const cs_robot, index: usize) -> *const c_char {
+    // SAFETY: the caller's promise.
+    text_at(unsafe { robot.as_ref() }.map(|robot| &robot.links), index)
+}
+
+/// What is unusual about the description. NULL beyond the last one; lives as long as the robot.
+///
+/// # Safety
+/// `robot` is NULL or lives.
+#[no_mangle]
+pub unsafe extern "C" fn cs_robot_warning(robot: *const cs_robot, index: usize) -> *const c_char {
+    // SAFETY: the caller's promise.
+    text_at(unsafe { robot.as_ref() }.map(|robot| &robot.warnings), index)
+}
+
+fn text_at(texts: Option<&Vec<CString>>, index: usize) -> *const c_char {
+    texts.and_then(|texts| texts.get(index)).map_or(ptr::null(), |text| text.as_ptr())
 }
