@@ -17,6 +17,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.dataset as ds
 import pytest
+from ctrl_c import HEARS_CTRL_C
 from log_files import DT, arm, named_columns, pushed, write_csv
 
 import contactsense as cs
@@ -215,15 +216,6 @@ def test_both_engines_give_the_same_data_set(logs: list[Path], tmp_path: Path) -
             timeout=300,
         )
     assert content(tmp_path / "local") == content(tmp_path / "ray")
-
-
-# Shells let what runs in the background ignore Ctrl-C, and its children inherit that.
-HEARS_CTRL_C = """
-import signal, sys
-signal.signal(signal.SIGINT, signal.default_int_handler)
-from contactsense.cli.app import run
-sys.exit(run(sys.argv[1:]))
-"""
 
 
 def stopped(arguments: list[str], when: Callable[[], bool], how: int) -> int:

@@ -17,6 +17,7 @@ from pathlib import Path
 from urllib.parse import parse_qs, urlsplit
 
 import pytest
+from ctrl_c import HEARS_CTRL_C
 from log_files import DT, arm, named_columns, pushed, write_csv
 from tools.browser import chromium
 from viewer_pages import free_port
@@ -311,15 +312,18 @@ def test_the_command_tells_the_address_with_the_token(tmp_path: Path) -> None:
     words = {"position": "pos", "velocity": "vel", "torque": "effort"}
     columns = {"time": log.time, **named_columns(log, [str(k) for k in range(1, 8)], words)}
     file = write_csv(tmp_path / "pushed.csv", columns)
-    command = [sys.executable, "-m", "contactsense.cli", "view", str(file), "--robot", "iiwa14"]
+    command = [sys.executable, "-c", HEARS_CTRL_C, "view", str(file), "--robot", "iiwa14"]
     command += ["--host", "0.0.0.0", "--port", str(free_port())]
     environment = {**os.environ, "CONTACTSENSE_TOKEN": TOKEN}
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment) as process:
         assert process.stderr is not None
-        told = next(line for line in process.stderr if "shows the log" in line)
-        check_gate(told.split()[0], TOKEN)
-        process.send_signal(signal.SIGINT)
-        assert process.wait(timeout=60.0) == 0
+        try:
+            told = next(line for line in process.stderr if "shows the log" in line)
+            check_gate(told.split()[0], TOKEN)
+            process.send_signal(signal.SIGINT)
+            assert process.wait(timeout=60.0) == 0
+        finally:
+            process.kill()
 
 
 def test_a_place_that_cannot_be_listened_at_is_named() -> None:
