@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test lint types rust-test python-test shared-test bench docs clean toolchain install studies wheel-check
+.PHONY: demo test lint types rust-test python-test shared-test bench docs clean toolchain install studies wheel-check header
 
 demo: GROUP :=
 demo: install
@@ -34,6 +34,10 @@ rust-test: toolchain
 	cargo test --workspace --release --quiet
 	cargo test -p contactsense --quiet --features serde --test suite plain_data
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --release --quiet
+
+# The header of the C interface, from its sources; a test compares them.
+header: toolchain
+	CONTACTSENSE_WRITE_HEADER=1 cargo test -p contactsense-capi --release --quiet --test header
 
 # On all cores; the tests of a file stay together, since they share what is set up once.
 python-test: studies
