@@ -42,21 +42,21 @@ typedef struct {
 
 // How a monitor works; `cs_monitor_options_default` has the defaults.
 typedef struct {
-  // Time between two calls [s].
+  // Time between two calls (s).
   double dt;
-  // Gain of the momentum observer [1/s].
+  // Gain of the momentum observer (1/s).
   double observer_gain;
-  // Torques that are a contact: one number for all joints, or one for each [Nm; N for sliding joints]. NULL: 0.5.
+  // Torques that are a contact: one number for all joints, or one for each (Nm; N for sliding joints). NULL: 0.5.
   const double *torque_threshold;
   // Number of these: 1, or that of `cs_robot_nv`.
   size_t torque_threshold_count;
-  // Time constant of the bias that is tracked without contact [s]; 0 for no tracking.
+  // Time constant of the bias that is tracked without contact (s); 0 for no tracking.
   double bias_time_constant;
-  // A signal stays on so long after it was last over its threshold [s].
+  // A signal stays on so long after it was last over its threshold (s).
   double hold_time;
   // Contacts reported at most.
   size_t max_contacts;
-  // A contact is located if 90 % of the places that explain the torques are this near to its point [m].
+  // A contact is located if 90 % of the places that explain the torques are this near to its point (m).
   double locate_within;
   // Samples of the surface for the posterior of a contact; 0 for closed forms only.
   size_t samples;
@@ -72,7 +72,7 @@ typedef struct {
   const double *tau;
   // Torque of friction, which is subtracted from `tau`; NULL for none.
   const double *friction;
-  // Time since the last accepted sample [s]; 0 for that of the options.
+  // Time since the last accepted sample (s); 0 for that of the options.
   double dt;
 } cs_sample;
 
@@ -84,31 +84,31 @@ typedef struct {
   bool located;
   // Whether redundant torques agree with the contacts of the report.
   bool verified;
-  // Where it is, world frame [m].
+  // Where it is, world frame (m).
   double point[3];
   // Outward normal of the surface there, world frame.
   double normal[3];
-  // Force on the robot, world frame [N].
+  // Force on the robot, world frame (N).
   double force[3];
-  // Force and moment on the robot at the link's origin, world axes [N, Nm].
+  // Force and moment on the robot at the link's origin, world axes (N, Nm).
   double wrench[6];
-  // Standard deviation of the point [m].
+  // Standard deviation of the point (m).
   double point_std;
   // Probability that the contact is on this link.
   double probability;
-  // The ball of this radius about the point holds 90 % of the posterior [m].
+  // The ball of this radius about the point holds 90 % of the posterior (m).
   double region_radius;
   // The same contact has the same number in all ticks, from 0 on; -1 where contacts are not followed.
   int64_t id;
-  // When it began, since the first call [s].
+  // When it began, since the first call (s).
   double since;
-  // Its largest force so far [N].
+  // Its largest force so far (N).
   double peak_force;
 } cs_contact;
 
 // What a monitor says of a tick. The caller's memory: nothing in it has to be freed.
 typedef struct {
-  // Since the first call [s].
+  // Since the first call (s).
   double time;
   // How unlikely the torques are without contact, in standard deviations; NaN with thresholds for each joint.
   double significance;
@@ -122,7 +122,7 @@ typedef struct {
   bool truncated;
   size_t contact_count;
   cs_contact contacts[CS_MAX_CONTACTS];
-  // Room for `nv` numbers that the caller owns, or NULL: the external torque without bias [Nm, N].
+  // Room for `nv` numbers that the caller owns, or NULL: the external torque without bias (Nm, N).
   double *external_torque;
   // The same without wanted contacts and stops of joints.
   double *collision_torque;

@@ -22,21 +22,21 @@ pub struct cs_monitor {
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct cs_monitor_options {
-    /// Time between two calls [s].
+    /// Time between two calls (s).
     pub dt: f64,
-    /// Gain of the momentum observer [1/s].
+    /// Gain of the momentum observer (1/s).
     pub observer_gain: f64,
-    /// Torques that are a contact: one number for all joints, or one for each [Nm; N for sliding joints]. NULL: 0.5.
+    /// Torques that are a contact: one number for all joints, or one for each (Nm; N for sliding joints). NULL: 0.5.
     pub torque_threshold: *const f64,
     /// Number of these: 1, or that of `cs_robot_nv`.
     pub torque_threshold_count: usize,
-    /// Time constant of the bias that is tracked without contact [s]; 0 for no tracking.
+    /// Time constant of the bias that is tracked without contact (s); 0 for no tracking.
     pub bias_time_constant: f64,
-    /// A signal stays on so long after it was last over its threshold [s].
+    /// A signal stays on so long after it was last over its threshold (s).
     pub hold_time: f64,
     /// Contacts reported at most.
     pub max_contacts: usize,
-    /// A contact is located if 90 % of the places that explain the torques are this near to its point [m].
+    /// A contact is located if 90 % of the places that explain the torques are this near to its point (m).
     pub locate_within: f64,
     /// Samples of the surface for the posterior of a contact; 0 for closed forms only.
     pub samples: usize,
@@ -54,7 +54,7 @@ pub struct cs_sample {
     pub tau: *const f64,
     /// Torque of friction, which is subtracted from `tau`; NULL for none.
     pub friction: *const f64,
-    /// Time since the last accepted sample [s]; 0 for that of the options.
+    /// Time since the last accepted sample (s); 0 for that of the options.
     pub dt: f64,
 }
 

@@ -17,25 +17,25 @@ pub struct cs_contact {
     pub located: bool,
     /// Whether redundant torques agree with the contacts of the report.
     pub verified: bool,
-    /// Where it is, world frame [m].
+    /// Where it is, world frame (m).
     pub point: [f64; 3],
     /// Outward normal of the surface there, world frame.
     pub normal: [f64; 3],
-    /// Force on the robot, world frame [N].
+    /// Force on the robot, world frame (N).
     pub force: [f64; 3],
-    /// Force and moment on the robot at the link's origin, world axes [N, Nm].
+    /// Force and moment on the robot at the link's origin, world axes (N, Nm).
     pub wrench: [f64; 6],
-    /// Standard deviation of the point [m].
+    /// Standard deviation of the point (m).
     pub point_std: f64,
     /// Probability that the contact is on this link.
     pub probability: f64,
-    /// The ball of this radius about the point holds 90 % of the posterior [m].
+    /// The ball of this radius about the point holds 90 % of the posterior (m).
     pub region_radius: f64,
     /// The same contact has the same number in all ticks, from 0 on; -1 where contacts are not followed.
     pub id: i64,
-    /// When it began, since the first call [s].
+    /// When it began, since the first call (s).
     pub since: f64,
-    /// Its largest force so far [N].
+    /// Its largest force so far (N).
     pub peak_force: f64,
 }
 
@@ -43,7 +43,7 @@ pub struct cs_contact {
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct cs_report {
-    /// Since the first call [s].
+    /// Since the first call (s).
     pub time: f64,
     /// How unlikely the torques are without contact, in standard deviations; NaN with thresholds for each joint.
     pub significance: f64,
@@ -57,7 +57,7 @@ pub struct cs_report {
     pub truncated: bool,
     pub contact_count: usize,
     pub contacts: [cs_contact; CS_MAX_CONTACTS],
-    /// Room for `nv` numbers that the caller owns, or NULL: the external torque without bias [Nm, N].
+    /// Room for `nv` numbers that the caller owns, or NULL: the external torque without bias (Nm, N).
     pub external_torque: *mut f64,
     /// The same without wanted contacts and stops of joints.
     pub collision_torque: *mut f64,
