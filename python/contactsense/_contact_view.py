@@ -21,7 +21,9 @@ _ELEVATION, _STEP = 25.0, 15
 _BELOW = 0.005
 # Points of the link whose sight counts as much as that of the place.
 _SAMPLES = 20
-# Of the greatest force of a picture [m].
+# Half the width and the length of its head [points].
+_ARROW = "-|>,head_width=4.5,head_length=9"
+# The greatest force of a picture, as a share of the robot's size.
 _LONGEST = 0.2
 
 
@@ -63,7 +65,7 @@ def draw_contact(axes: Axes, robot: Robot, contact: ShownContact, greatest: floa
         contact: the contact.
         greatest: force of the longest arrow [N].
     """
-    from matplotlib.patches import Circle
+    from matplotlib.patches import Circle, FancyArrowPatch
     from matplotlib.patheffects import withStroke
 
     view = _best_eye(robot, contact)
@@ -76,10 +78,23 @@ def draw_contact(axes: Axes, robot: Robot, contact: ShownContact, greatest: floa
                 Circle((at[0], at[1]), contact.region_radius, fill=False, ls="--", ec=TEXT, zorder=4)
             )
         if np.all(np.isfinite(contact.force)):
-            start = _flat(contact.point - contact.force * (_LONGEST / max(greatest, 1e-9)), view)
-            ends = np.stack([start, at])
-            outline = [withStroke(linewidth=6.0, foreground="white")]
-            axes.plot(*ends.T, color=colour, lw=3.5, solid_capstyle="butt", zorder=5, path_effects=outline)
+            origins = np.array([robot.link_pose(contact.q, link)[:3, 3] for link in robot.link_names])
+            longest = _LONGEST * float(np.ptp(origins, axis=0).max())
+            start = _flat(contact.point - contact.force * (longest / max(greatest, 1e-9)), view)
+            axes.update_datalim([start])
+            arrow = FancyArrowPatch(
+                (start[0], start[1]),
+                (at[0], at[1]),
+                arrowstyle=_ARROW,
+                color=colour,
+                lw=3.0,
+                shrinkA=0.0,
+                shrinkB=3.5,
+                mutation_scale=1.0,
+                zorder=5,
+            )
+            arrow.set_path_effects([withStroke(linewidth=5.5, foreground="white")])
+            axes.add_patch(arrow)
         axes.plot(*at, "o", color=colour, ms=7.0, mec="white", mew=1.2, zorder=6)
     axes.autoscale_view()
     axes.set_axis_off()
