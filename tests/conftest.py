@@ -20,9 +20,9 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
         pytest.skip(f"needs robots or logs that are not part of the project, in {SHARED}")
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
-    """One tab for all tests; its page is small, as there is no graphics card."""
+    """One tab for the tests of a file: it draws while it is there, without a graphics card, and has threads."""
     if chromium() is None:
         pytest.skip("there is no Chromium")
     pytest.importorskip("matplotlib")
