@@ -22,7 +22,7 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
-    """One tab for the tests of a file: it draws while it is there, without a graphics card, and has threads."""
+    """One tab for the tests of a file: it draws while it is there, without a graphics card, in threads."""
     if chromium() is None:
         pytest.skip("there is no Chromium")
     pytest.importorskip("matplotlib")
