@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import platform
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from importlib import metadata
 from pathlib import Path
 
@@ -34,28 +34,24 @@ def use_one_core(core: int | None = None) -> str:
     return f"pinned to core {core}"
 
 
-@contextmanager
-def all_cores() -> Iterator[None]:
+def all_cores() -> AbstractContextManager[None]:
     """Frees this thread, and those that it starts, from the one core meanwhile."""
-    if not _allowed:
-        yield
-        return
-    pinned = os.sched_getaffinity(0)
-    os.sched_setaffinity(0, _allowed)
-    try:
-        yield
-    finally:
-        os.sched_setaffinity(0, pinned)
+    return _on_cores(lambda pinned: _allowed)
+
+
+def other_cores() -> AbstractContextManager[None]:
+    """Processes that are started meanwhile run on the other cores, if there are any."""
+    return _on_cores(lambda pinned: _allowed - pinned or _allowed)
 
 
 @contextmanager
-def other_cores() -> Iterator[None]:
-    """Processes that are started meanwhile run on the other cores, if there are any."""
+def _on_cores(chosen: Callable[[set[int]], set[int]]) -> Iterator[None]:
+    """On cores that are chosen by those of before; where nothing is pinned, it stays so."""
     if not _allowed:
         yield
         return
     pinned = os.sched_getaffinity(0)
-    os.sched_setaffinity(0, _allowed - pinned or _allowed)
+    os.sched_setaffinity(0, chosen(pinned))
     try:
         yield
     finally:
