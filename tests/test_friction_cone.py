@@ -113,7 +113,7 @@ def test_forces_are_those_of_clarabel():
     assert solved > 0.95 * PROBLEMS
 
 
-# The solver is given products of torques: those of numbers that differ by more than 1e8 in size are lost in rounding.
+# The solver is given products of torques, in which the smaller of two that differ by 1e8 in size is lost.
 SMALLEST = 1e-4
 
 

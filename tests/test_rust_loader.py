@@ -74,6 +74,10 @@ def assert_same_surface(ours, theirs, name):
     assert ours.watertight == theirs.watertight
 
 
+def fingerprint(robot):
+    return cs.Calibration.of_description(robot).fingerprint
+
+
 def assert_same(ours, theirs, frames=()):
     """The same robot, or the same refusal."""
     if isinstance(theirs, cs.ContactSenseError):
@@ -85,6 +89,8 @@ def assert_same(ours, theirs, frames=()):
     for field in ("name", "nq", "nv", "floating_base", "joint_names", "link_names", "warnings"):
         assert getattr(ours, field) == getattr(theirs, field), field
     np.testing.assert_array_equal(ours.neutral(), theirs.neutral())
+    # A calibration learnt with one of them is used with the other.
+    assert fingerprint(ours) == fingerprint(theirs)
     rng = np.random.default_rng(1)
     for _ in range(STATES):
         q = configuration(theirs, rng)

@@ -839,6 +839,10 @@ class Calibration:
     def _content(self) -> str:
         """The core's content as JSON."""
     @staticmethod
+    def _load(path: str | PathLike[str]) -> Calibration: ...
+    def _to_yaml(self, source: str, date: str) -> str:
+        """The text of a file."""
+    @staticmethod
     def _of_description(robot: Robot) -> Calibration: ...
     @property
     def robot_name(self) -> str:

@@ -48,16 +48,7 @@ class Calibration(_core.Calibration):
             InputError: the file cannot be read, or an entry is missing, unknown or wrong; names the file, the
                 joint and the entry.
         """
-        import json  # YAML and these take milliseconds that few programs need
-
-        from .read_file import content_of
-
-        file = _file(path)
-        try:
-            text = file.read_text(encoding="utf-8")
-        except (OSError, ValueError) as error:  # no file; no UTF-8, or a name that cannot be one
-            raise InputError(f"path: cannot read {file}: {error}") from error
-        return cls(json.dumps(content_of(str(file), text)))
+        return cls(_core.Calibration._load(_file(path)))
 
     def save(self, path: str | os.PathLike[str], *, source: str = "") -> None:
         """Writes a YAML file keyed by the names of joints and links, with units, for people to read and edit.
@@ -71,15 +62,12 @@ class Calibration(_core.Calibration):
         Raises:
             InputError: the file cannot be written, or `source` is no text.
         """
-        import json
         from datetime import date
-
-        from .write_file import written
 
         if not isinstance(source, str):
             raise InputError(f"source: expected a string, got {source!r}")
         file = _file(path)
-        text = written(json.loads(self._content()), _core.__version__, source, date.today().isoformat())
+        text = self._to_yaml(source, date.today().isoformat())
         try:
             file.write_text(text, encoding="utf-8")
         except (OSError, ValueError) as error:

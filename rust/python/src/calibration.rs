@@ -1,5 +1,7 @@
 //! `Calibration`, and how it is learnt.
 
+use std::path::PathBuf;
+
 use contactsense::calibration::{calibrate, Calibration, CalibrationOptions, Log};
 use contactsense::NoiseModel;
 use numpy::{PyArray1, PyArray2};
@@ -101,6 +103,16 @@ impl PyCalibration {
     /// The core's content as JSON.
     fn _content(&self, py: Python<'_>) -> PyResult<String> {
         serde_json::to_string(&self.0).map_err(|error| input(py, format!("calibration: {error}")))
+    }
+
+    #[staticmethod]
+    fn _load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        Calibration::load(path).map(Self).map_err(|error| to_python(py, error))
+    }
+
+    /// The text of a file.
+    fn _to_yaml(&self, py: Python<'_>, source: &str, date: &str) -> PyResult<String> {
+        self.0.to_yaml(source, date).map_err(|error| to_python(py, error))
     }
 
     #[staticmethod]

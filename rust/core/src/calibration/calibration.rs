@@ -285,9 +285,8 @@ impl Calibration {
         }
         for body in &self.bodies {
             let numbers = body.com.iter().chain(&body.inertia).chain([&body.mass]);
-            let moments = principal_moments(&moment_matrix(&body.inertia));
             let is_body = numbers.clone().all(|x| x.abs() < LARGEST) && body.mass >= 0.0;
-            if !is_body || moments.is_ok_and(|moments| moments[0] < -NEGATIVE * moments[2].abs()) {
+            if !is_body || negative_moments(&body.inertia).is_some() {
                 let text = format!("bodies: mass and inertia of '{}' must be those of a body", body.link);
                 return Err(Error::input("calibration", text));
             }
@@ -357,6 +356,12 @@ impl Calibration {
 
 /// Rounding, and published inertias that are a little off, make moments this negative (share of the largest).
 const NEGATIVE: f64 = 0.5;
+
+/// The principal moments of an inertia (`xx, xy, yy, xz, yz, zz`) that no body has.
+pub(super) fn negative_moments(inertia: &[f64; 6]) -> Option<[f64; 3]> {
+    let moments = principal_moments(&moment_matrix(inertia));
+    moments.ok().filter(|moments| moments[0] < -NEGATIVE * moments[2].abs())
+}
 
 /// A longer delay is another fault (s).
 const LONGEST_DELAY: f64 = 1.0;

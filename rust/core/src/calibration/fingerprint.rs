@@ -6,8 +6,16 @@ use crate::robot::{JointKind, Robot};
 const OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
 const PRIME: u64 = 0x0000_0100_0000_01b3;
 
-/// Of the joints' names, kinds and places and the bodies' inertias, to six digits; a floating base is left out, so that a
-/// robot calibrated with its base held is the same robot when it walks.
+/// Of a length (m), and of an entry of a rotation matrix: what differs by more is another robot.
+const PLACE_STEP: f64 = 1e-6;
+/// Of a mass, and of the size of an inertia: shares.
+const INERTIA_STEP: f64 = 1e-5;
+/// Descriptions hold decimal numbers, and readers round them differently: with steps that begin at a number which is no
+/// decimal, rounding does not change the step (share of a step).
+const OFFSET_OF_STEPS: f64 = std::f64::consts::FRAC_1_PI;
+
+/// Of the joints' names, kinds and places and the bodies' inertias, coarsely, so that all readers of a description give the
+/// same; a floating base is left out, so that a robot calibrated with its base held is the same robot when it walks.
 pub(super) fn fingerprint(robot: &Robot) -> String {
     let mut hash = OFFSET;
     let mut add = |text: &str| {
@@ -21,15 +29,29 @@ pub(super) fn fingerprint(robot: &Robot) -> String {
         }
         add(name);
         add(body.kind.name());
-        let place = body.placement.translation.iter().chain(body.placement.rotation.iter());
-        let numbers = place.chain(body.com.iter()).chain(body.inertia.iter()).chain([&body.mass]);
-        for number in numbers {
-            // No difference between 0 and -0, nor between numbers that rounding makes of 0.
-            let rounded = if number.abs() < 1e-9 { 0.0 } else { *number };
-            add(&format!("{rounded:.5e}"));
+        let places =
+            body.placement.translation.iter().chain(body.placement.rotation.iter()).chain(body.com.iter());
+        for place in places {
+            add(&steps(*place, PLACE_STEP));
+        }
+        let size = body.inertia.trace();
+        // Entries are beside the size: those of a small body tell it from another one, too, and those that only rounding
+        // makes other than zero do not.
+        let magnitude = steps(size.ln(), INERTIA_STEP);
+        let entries =
+            body.inertia.iter().map(|entry| steps(if size > 0.0 { entry / size } else { 0.0 }, INERTIA_STEP));
+        for text in [steps(body.mass.ln(), INERTIA_STEP), magnitude].into_iter().chain(entries) {
+            add(&text);
         }
     }
     format!("{hash:016x}")
+}
+
+/// The number of the step that a number lies in.
+fn steps(number: f64, step: f64) -> String {
+    let count = (number / step + OFFSET_OF_STEPS).floor();
+    // No difference between 0 and -0.
+    format!("{}", count + 0.0)
 }
 
 #[cfg(test)]

@@ -7,6 +7,8 @@ mod contacts;
 mod delay;
 mod excitation;
 mod false_alarms;
+#[cfg(feature = "calibration-files")]
+mod file;
 mod fingerprint;
 mod folds;
 mod hysteresis;

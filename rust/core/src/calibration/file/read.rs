@@ -1,0 +1,217 @@
+//! A calibration from a file.
+
+use std::path::Path;
+
+use super::entries::{Entries, Found};
+use super::layout::{
+    nameless, Field, Rule, BEFORE_REVERSAL, DISPLACEMENT, FORMAT, JOINT_FIELDS, NOISE_FIELDS, ROBOT_FIELDS,
+    VELOCITY,
+};
+use super::yaml::parse;
+use crate::calibration::calibration::negative_moments;
+use crate::calibration::{BodyInertia, Calibration, Friction, Payload, Reversal, Tail};
+use crate::error::{Error, Result};
+use crate::load::read_regular_file;
+use crate::torque::NoiseModel;
+
+/// A file of a hundred joints has 100 kB (bytes).
+const LARGEST_FILE: u64 = 10_000_000;
+
+impl Calibration {
+    /// A calibration from a file that [`Calibration::to_yaml`] wrote, perhaps edited since. No robot is needed: whether it
+    /// fits one is known when it is used, or by [`Calibration::check`].
+    ///
+    /// # Errors
+    /// [`Error::Input`] where the file cannot be read, or an entry is missing, unknown or wrong; it names the file, the
+    /// joint and the entry.
+    ///
+    /// ```no_run
+    /// use contactsense::calibration::Calibration;
+    ///
+    /// let calibration = Calibration::load("arm.yaml")?;
+    /// println!("{:?}", calibration.torque_bias);
+    /// # Ok::<(), contactsense::Error>(())
+    /// ```
+    pub fn load(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        let unread =
+            |problem: String| Error::input("path", format!("cannot read {}: {problem}", path.display()));
+        let bytes = read_regular_file(path, LARGEST_FILE).map_err(|problem| unread(problem.to_string()))?;
+        let text = String::from_utf8(bytes).map_err(|error| unread(format!("it is no UTF-8: {error}")))?;
+        Calibration::from_yaml(&text).map_err(|problem| Error::input(path.display().to_string(), problem))
+    }
+
+    /// What is wrong is said by the entries that lead there.
+    pub(super) fn from_yaml(text: &str) -> Found<Self> {
+        let root = parse(text.strip_prefix('\u{feff}').unwrap_or(text))?;
+        let mut entries = Entries::new(String::new(), &root)?;
+        let format = entries.take("format", FORMAT)?;
+        if super::entries::shown(format) != FORMAT {
+            return Err(format!(
+                "format: this version of contactsense reads format {FORMAT}, not {}; calibrate anew, or use the version \
+                 that wrote the file",
+                super::entries::shown(format)
+            ));
+        }
+        for name in ["contactsense", "source", "date"] {
+            entries.take(name, "a text")?; // for people
+        }
+        let mut robot = entries.inner("robot")?;
+        let joints = robot.texts("joints", "names of joints, in the order of the velocity")?;
+        let mut calibration = empty(robot.text("name")?, robot.text("fingerprint")?, joints);
+        robot.done()?;
+        for (index, joint) in calibration.joints.iter().enumerate() {
+            if calibration.joints[..index].contains(joint) {
+                return Err(format!("robot: joints: '{joint}' stands there twice"));
+            }
+        }
+        calibration.torque_is_external = entries.flag("torque_is_external")?;
+        for field in &ROBOT_FIELDS {
+            *(field.get_mut)(&mut calibration) = entries.number(field.name, field.unit, field.rule)?;
+        }
+        calibration.read_joints(entries.inner("joints")?)?;
+        calibration.noise = noise(entries.inner("noise")?, &calibration.joints)?;
+        calibration.bodies = bodies(entries.inner("links")?, &calibration.joints)?;
+        calibration.payload = match entries.take_null("payload") {
+            true => None,
+            false => Some(payload(entries.inner("payload")?)?),
+        };
+        let mut offsets = entries.inner("sensor_offsets")?;
+        for sensor in offsets.names() {
+            calibration
+                .sensor_offsets
+                .push((sensor.to_owned(), offsets.numbers(sensor, "N, Nm", Rule::Any)?));
+        }
+        for (name, item) in entries.items("tails", "triples of gain [1/s], level and scale")? {
+            let [gain, level, scale] = entries.as_numbers(&name, item, "1/s, 1, 1", Rule::Any)?;
+            calibration.tails.push(Tail { gain, level, scale });
+        }
+        for (name, item) in entries.items("contacts", "pairs of times [s], from when to when")? {
+            calibration.contacts.push(entries.as_numbers(&name, item, "s", Rule::Any)?);
+        }
+        calibration.notes = entries.texts("notes", "texts")?;
+        entries.done()?;
+        Ok(calibration)
+    }
+
+    fn read_joints(&mut self, mut entries: Entries) -> Found<()> {
+        for joint in self.joints.clone() {
+            let mut entry = entries.inner(&joint)?;
+            for field in &JOINT_FIELDS {
+                let number = entry.number(field.name, field.unit, field.rule)?;
+                (field.get_mut)(self).push(number);
+                if field.name == BEFORE_REVERSAL {
+                    self.friction.reversal.push(reversal(&mut entry)?);
+                }
+            }
+            entry.done()?;
+        }
+        entries.done()
+    }
+}
+
+/// Without numbers: whoever adds a field to the core is told here to read it.
+fn empty(robot: String, fingerprint: String, joints: Vec<String>) -> Calibration {
+    Calibration {
+        robot,
+        fingerprint,
+        joints,
+        torque_bias: vec![],
+        torque_bias_std: vec![],
+        torque_scale: vec![],
+        torque_is_external: false,
+        friction: Friction::default(),
+        hysteresis: vec![],
+        hysteresis_std: vec![],
+        hysteresis_width: vec![],
+        coulomb_std: vec![],
+        viscous_std: vec![],
+        armature: vec![],
+        armature_std: vec![],
+        bodies: vec![],
+        payload: None,
+        inertial_change: 0.0,
+        velocity_delay: 0.0,
+        torque_delay: 0.0,
+        sensor_offsets: vec![],
+        noise: NoiseModel::default(),
+        residual: vec![],
+        tails: vec![],
+        false_alarms_per_hour: 1.0,
+        contacts: vec![],
+        notes: vec![],
+    }
+}
+
+fn reversal(joint: &mut Entries) -> Found<Reversal> {
+    let mut entries = joint.inner("reversal")?;
+    let found = match entries.names()[..] {
+        ["velocity"] => Reversal::Velocity(entries.number("velocity", VELOCITY, Rule::Positive)?),
+        ["displacement"] => {
+            Reversal::Displacement(entries.number("displacement", DISPLACEMENT, Rule::Positive)?)
+        }
+        ref names => {
+            let problem = "must be {velocity: number} or {displacement: number}";
+            return Err(entries.wrong(problem, &format!("{{{}}}", names.join(", "))));
+        }
+    };
+    entries.done()?;
+    Ok(found)
+}
+
+fn noise(mut entries: Entries, joints: &[String]) -> Found<NoiseModel> {
+    let mut noise = NoiseModel::default();
+    for Field { name, unit, rule, get_mut, .. } in &NOISE_FIELDS {
+        *get_mut(&mut noise) = if entries.is_mapping(name) {
+            let mut by_joint = entries.inner(name)?;
+            let numbers =
+                joints.iter().map(|joint| by_joint.number(joint, unit, *rule)).collect::<Found<_>>()?;
+            by_joint.done()?;
+            numbers
+        } else {
+            vec![entries.number(name, unit, *rule)?]
+        };
+    }
+    entries.done()?;
+    Ok(noise)
+}
+
+fn bodies(mut entries: Entries, joints: &[String]) -> Found<Vec<BodyInertia>> {
+    let mut found: Vec<Option<BodyInertia>> = joints.iter().map(|_| None).collect();
+    for link in entries.names() {
+        let mut entry = entries.inner(link)?;
+        let joint = entry.text("joint")?;
+        let free = joints.iter().zip(&mut found).find(|(known, body)| **known == joint && body.is_none());
+        let Some((_, body)) = free else {
+            let problem = format!("joint must be another one of {}", joints.join(", "));
+            return Err(entry.wrong(&problem, &format!("'{joint}'")));
+        };
+        let inertia = entry.numbers("inertia", "kg m^2", Rule::Any)?;
+        if let Some(moments) = negative_moments(&inertia) {
+            let problem = "inertia: its principal moments must not be negative [kg m^2]";
+            return Err(entry.wrong(problem, &format!("{moments:.9?}")));
+        }
+        *body = Some(BodyInertia {
+            link: if link == nameless(&joint) { String::new() } else { link.to_owned() },
+            mass: entry.number("mass", "kg", Rule::NotNegative)?,
+            com: entry.numbers("com", "m", Rule::Any)?,
+            inertia,
+        });
+        entry.done()?;
+    }
+    let missing = |joint: &String| entries.missing(&format!("the link that joint '{joint}' moves"));
+    joints.iter().zip(found).map(|(joint, body)| body.ok_or_else(|| missing(joint))).collect()
+}
+
+fn payload(mut entries: Entries) -> Found<Payload> {
+    let payload = Payload {
+        link: entries.text("link")?,
+        mass: entries.number("mass", "kg", Rule::NotNegative)?,
+        mass_std: entries.number("mass_std", "kg", Rule::NotNegative)?,
+        com: entries.numbers("com", "m", Rule::Any)?,
+        com_std: entries.numbers("com_std", "m", Rule::NotNegative)?,
+        moment: entries.number("moment", "kg m^2", Rule::NotNegative)?,
+    };
+    entries.done()?;
+    Ok(payload)
+}
