@@ -1,9 +1,10 @@
 // Gives the rows of a file to a monitor, as a control loop would, and prints the contacts.
 //
-//     cc -std=c11 replay.c -I ../include -lcontactsense_c -lm -o replay
-//     ./replay arm.urdf rows.bin
+//     cc -std=c11 replay.c $(pkg-config --cflags --libs contactsense) -o replay
+//     ./replay arm.urdf rows.bin arm.yaml
 //
-// The file has doubles in the order of this machine: for each row q, v and tau.
+// The file has doubles in the order of this machine: for each row q, v and tau. The calibration is from
+// `contactsense calibrate`.
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,18 +17,18 @@ static int fail(const char *what) {
 }
 
 int main(int argc, char **argv) {
-  if (argc != 3) {
-    fprintf(stderr, "usage: replay URDF ROWS\n");
+  if (argc != 4) {
+    fprintf(stderr, "usage: replay URDF ROWS CALIBRATION\n");
     return EXIT_FAILURE;
   }
   cs_robot *robot;
   if (cs_robot_from_urdf(argv[1], NULL, &robot) != CS_OK) return fail(argv[1]);
   for (size_t k = 0; cs_robot_warning(robot, k); ++k) fprintf(stderr, "warning: %s\n", cs_robot_warning(robot, k));
 
-  double threshold = 0.6;  // [Nm]
+  cs_calibration *calibration;
+  if (cs_calibration_load(argv[3], &calibration) != CS_OK) return fail(argv[3]);
   cs_monitor_options options = cs_monitor_options_default(0.001);
-  options.torque_threshold = &threshold;
-  options.torque_threshold_count = 1;
+  options.calibration = calibration;
   cs_monitor *monitor;
   if (cs_monitor_new(robot, &options, &monitor) != CS_OK) return fail("monitor");
 
@@ -61,6 +62,7 @@ int main(int argc, char **argv) {
   free(report.external_torque);
   free(row);
   cs_monitor_free(monitor);
+  cs_calibration_free(calibration);
   cs_robot_free(robot);
   return code;
 }

@@ -1,45 +1,29 @@
 //! Monitors: one call a control tick.
 
+use std::ffi::c_char;
 use std::ptr;
-use std::slice;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use contactsense::monitor::{ContactMonitor, MonitorOptions};
+use contactsense::monitor::{ContactMonitor, ContactReport};
 use contactsense::{ExternalSample, Result, Sample};
 
-use crate::guard::{guarded, numbers, object, object_mut, wrong};
+use crate::guard::{guarded, numbers, object, object_mut, text, wrong};
+use crate::options::cs_monitor_options;
 use crate::report::cs_report;
 use crate::robot::cs_robot;
 use crate::status::cs_status;
 
 /// The sense of touch of one robot. One thread at a time may use it: a call during another one is refused.
 pub struct cs_monitor {
-    monitor: ContactMonitor,
+    touch: Touch,
     busy: AtomicBool,
 }
 
-/// How a monitor works; `cs_monitor_options_default` has the defaults.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct cs_monitor_options {
-    /// Time between two calls (s).
-    pub dt: f64,
-    /// Gain of the momentum observer (1/s).
-    pub observer_gain: f64,
-    /// Torques that are a contact: one number for all joints, or one for each (Nm; N for sliding joints). NULL: 0.5.
-    pub torque_threshold: *const f64,
-    /// Number of these: 1, or that of `cs_robot_nv`.
-    pub torque_threshold_count: usize,
-    /// Time constant of the bias that is tracked without contact (s); 0 for no tracking.
-    pub bias_time_constant: f64,
-    /// A signal stays on so long after it was last over its threshold (s).
-    pub hold_time: f64,
-    /// Contacts reported at most.
-    pub max_contacts: usize,
-    /// A contact is located if 90 % of the places that explain the torques are this near to its point (m).
-    pub locate_within: f64,
-    /// Samples of the surface for the posterior of a contact; 0 for closed forms only.
-    pub samples: usize,
+/// What one thread at a time may use.
+struct Touch {
+    monitor: ContactMonitor,
+    /// Of the sensors, in the newest sample.
+    readings: Vec<Option<[f64; 6]>>,
 }
 
 /// The measurements of a tick.
@@ -54,54 +38,18 @@ pub struct cs_sample {
     pub tau: *const f64,
     /// Torque of friction, which is subtracted from `tau`; NULL for none.
     pub friction: *const f64,
+    /// Readings of the force/torque sensors, 6 numbers for each, in the sensor's axes (N, Nm); a sensor whose numbers are NaN
+    /// is left out, and all are where this is NULL.
+    pub wrenches: *const f64,
     /// Time since the last accepted sample (s); 0 for that of the options.
     pub dt: f64,
 }
 
-/// The defaults, for calls every `dt` seconds.
-#[no_mangle]
-pub extern "C" fn cs_monitor_options_default(dt: f64) -> cs_monitor_options {
-    let options = MonitorOptions::new(dt);
-    cs_monitor_options {
-        dt,
-        observer_gain: options.observer_gain[0],
-        torque_threshold: ptr::null(),
-        torque_threshold_count: 0,
-        bias_time_constant: 0.0,
-        hold_time: options.hold_time,
-        max_contacts: options.isolation.max_contacts,
-        locate_within: options.isolation.locate_within,
-        samples: options.samples,
-    }
-}
-
-impl cs_monitor_options {
-    /// As the core has them.
-    ///
-    /// # Safety
-    /// `torque_threshold` is null or points to as many numbers as it says.
-    unsafe fn wanted(&self) -> Result<MonitorOptions> {
-        let mut wanted = MonitorOptions::new(self.dt);
-        wanted.observer_gain = vec![self.observer_gain];
-        if !self.torque_threshold.is_null() {
-            // SAFETY: the caller's promise.
-            let threshold =
-                unsafe { numbers(self.torque_threshold, self.torque_threshold_count, "torque_threshold") }?;
-            wanted.isolation.torque_threshold = Some(threshold.to_vec());
-        }
-        wanted.bias_time_constant = Some(self.bias_time_constant).filter(|time| *time != 0.0);
-        wanted.hold_time = self.hold_time;
-        wanted.isolation.max_contacts = self.max_contacts;
-        wanted.isolation.locate_within = self.locate_within;
-        wanted.samples = self.samples;
-        Ok(wanted)
-    }
-}
-
-/// Makes a monitor, which belongs to the caller, who frees it with `cs_monitor_free`. The robot may be freed before.
+/// Makes a monitor, which belongs to the caller, who frees it with `cs_monitor_free`. All that it is made of may be freed
+/// before.
 ///
 /// # Safety
-/// `robot` and `options` live, with the numbers that they point to; `monitor` can be written to.
+/// `robot` and `options` live, with all that they point to; `monitor` can be written to.
 #[no_mangle]
 pub unsafe extern "C" fn cs_monitor_new(
     robot: *const cs_robot,
@@ -117,7 +65,11 @@ pub unsafe extern "C" fn cs_monitor_new(
         // SAFETY: as above.
         let options = unsafe { object(options, "options")?.wanted() }?;
         let monitor = ContactMonitor::new(robot.robot.clone(), &options)?;
-        *out = Box::into_raw(Box::new(cs_monitor { monitor, busy: AtomicBool::new(false) }));
+        let readings = vec![None; options.isolation.sensors.len()];
+        *out = Box::into_raw(Box::new(cs_monitor {
+            touch: Touch { monitor, readings },
+            busy: AtomicBool::new(false),
+        }));
         Ok(())
     })
 }
@@ -148,7 +100,7 @@ impl Drop for Used<'_> {
 /// # Safety
 /// `monitor` is null or lives.
 #[inline]
-unsafe fn alone(monitor: *mut cs_monitor, call: impl FnOnce(&mut ContactMonitor) -> Result<()>) -> cs_status {
+unsafe fn alone(monitor: *mut cs_monitor, call: impl FnOnce(&mut Touch) -> Result<()>) -> cs_status {
     guarded(|| {
         if monitor.is_null() {
             return Err(wrong("monitor", "must not be NULL"));
@@ -160,8 +112,43 @@ unsafe fn alone(monitor: *mut cs_monitor, call: impl FnOnce(&mut ContactMonitor)
         }
         let _used = Used(busy);
         // SAFETY: the flag was not set: nothing else uses the monitor until it is cleared.
-        call(unsafe { &mut *ptr::addr_of_mut!((*monitor).monitor) })
+        call(unsafe { &mut *ptr::addr_of_mut!((*monitor).touch) })
     })
+}
+
+/// Gives a sample to a monitor by `take`, and writes what it reports.
+///
+/// # Safety
+/// `monitor` lives; `sample` and its numbers live; `report` can be written to, and has room where it points to some.
+#[inline]
+unsafe fn reported(
+    monitor: *mut cs_monitor,
+    sample: *const cs_sample,
+    report: *mut cs_report,
+    take: impl for<'a> FnOnce(
+        &'a mut ContactMonitor,
+        &cs_sample,
+        &[Option<[f64; 6]>],
+    ) -> Result<&'a ContactReport>,
+) -> cs_status {
+    // SAFETY: the caller's promise.
+    unsafe {
+        alone(monitor, |touch| {
+            let (sample, out) = (object(sample, "sample")?, object_mut(report, "report")?);
+            let Touch { monitor, readings } = touch;
+            if sample.wrenches.is_null() {
+                readings.fill(None);
+            } else {
+                let wrenches = numbers(sample.wrenches, 6 * readings.len(), "wrenches")?;
+                for (reading, wrench) in readings.iter_mut().zip(wrenches.chunks_exact(6)) {
+                    let known = !wrench.iter().all(|number| number.is_nan());
+                    *reading = wrench.try_into().ok().filter(|_| known);
+                }
+            }
+            out.fill(take(monitor, sample, readings)?);
+            Ok(())
+        })
+    }
 }
 
 /// Takes in a tick, and writes what the monitor says of it. Allocates no memory, unless it fails.
@@ -176,22 +163,15 @@ pub unsafe extern "C" fn cs_monitor_update(
 ) -> cs_status {
     // SAFETY: the caller's promise.
     unsafe {
-        alone(monitor, |monitor| {
-            let (sample, out) = (object(sample, "sample")?, object_mut(report, "report")?);
+        reported(monitor, sample, report, |monitor, sample, readings| {
             let robot = monitor.robot();
-            let (nq, nv) = (robot.nq(), robot.nv());
-            let ntau = nv - robot.unactuated();
-            let (q, v, tau) =
-                (numbers(sample.q, nq, "q")?, numbers(sample.v, nv, "v")?, numbers(sample.tau, ntau, "tau")?);
-            let mut taken = Sample::new(q, v, tau);
+            let (nq, nv, ntau) = (robot.nq(), robot.nv(), robot.nv() - robot.unactuated());
+            let (q, v) = (numbers(sample.q, nq, "q")?, numbers(sample.v, nv, "v")?);
+            let mut taken = Sample::new(q, v, numbers(sample.tau, ntau, "tau")?).wrenches(readings);
             if !sample.friction.is_null() {
-                taken = taken.friction(slice::from_raw_parts(sample.friction, ntau));
+                taken = taken.friction(numbers(sample.friction, ntau, "friction")?);
             }
-            if sample.dt != 0.0 {
-                taken = taken.dt(sample.dt);
-            }
-            out.fill(monitor.update(&taken)?);
-            Ok(())
+            monitor.update(&given_dt(sample).map_or(taken, |dt| taken.dt(dt)))
         })
     }
 }
@@ -209,18 +189,79 @@ pub unsafe extern "C" fn cs_monitor_update_external(
 ) -> cs_status {
     // SAFETY: the caller's promise.
     unsafe {
-        alone(monitor, |monitor| {
-            let (sample, out) = (object(sample, "sample")?, object_mut(report, "report")?);
+        reported(monitor, sample, report, |monitor, sample, readings| {
             let (nq, nv) = (monitor.robot().nq(), monitor.robot().nv());
             let (q, torque) = (numbers(sample.q, nq, "q")?, numbers(sample.tau, nv, "tau")?);
-            let mut taken = ExternalSample::new(q, torque);
+            let mut taken = ExternalSample::new(q, torque).wrenches(readings);
             if !sample.v.is_null() {
-                taken = taken.velocity(slice::from_raw_parts(sample.v, nv));
+                taken = taken.velocity(numbers(sample.v, nv, "v")?);
             }
-            if sample.dt != 0.0 {
-                taken = taken.dt(sample.dt);
-            }
-            out.fill(monitor.update_external(&taken)?);
+            monitor.update_external(&given_dt(sample).map_or(taken, |dt| taken.dt(dt)))
+        })
+    }
+}
+
+fn given_dt(sample: &cs_sample) -> Option<f64> {
+    Some(sample.dt).filter(|dt| *dt != 0.0)
+}
+
+/// Says that the sample of a tick is lost; `dt` is the time since the last that was accepted (s), or 0.
+///
+/// # Safety
+/// `monitor` lives.
+#[no_mangle]
+pub unsafe extern "C" fn cs_monitor_miss(monitor: *mut cs_monitor, dt: f64) -> cs_status {
+    // SAFETY: the caller's promise.
+    unsafe {
+        alone(monitor, |touch| {
+            touch.monitor.miss(Some(dt).filter(|dt| *dt != 0.0));
+            Ok(())
+        })
+    }
+}
+
+/// Takes what is measured now for free of contact: bias and offsets of sensors become so.
+///
+/// # Safety
+/// `monitor` lives.
+#[no_mangle]
+pub unsafe extern "C" fn cs_monitor_tare(monitor: *mut cs_monitor) -> cs_status {
+    // SAFETY: the caller's promise.
+    unsafe { alone(monitor, |touch| touch.monitor.tare()) }
+}
+
+/// From the next tick on, a link carries a payload that the description lacks, with its centre of mass in the link's frame
+/// (kg, m); one that was set before is gone. Not for the control loop: it allocates.
+///
+/// # Safety
+/// `monitor` lives; `link` ends with NUL; `com` has three numbers.
+#[no_mangle]
+pub unsafe extern "C" fn cs_monitor_set_payload(
+    monitor: *mut cs_monitor,
+    link: *const c_char,
+    mass: f64,
+    com: *const f64,
+) -> cs_status {
+    // SAFETY: the caller's promise.
+    unsafe {
+        alone(monitor, |touch| {
+            let com = numbers(com, 3, "com")?;
+            let link = touch.monitor.robot().link(text(link, "link")?)?;
+            touch.monitor.set_payload(link, mass, [com[0], com[1], com[2]])
+        })
+    }
+}
+
+/// From the next tick on, there is no such payload. Not for the control loop: it frees memory.
+///
+/// # Safety
+/// `monitor` lives.
+#[no_mangle]
+pub unsafe extern "C" fn cs_monitor_clear_payload(monitor: *mut cs_monitor) -> cs_status {
+    // SAFETY: the caller's promise.
+    unsafe {
+        alone(monitor, |touch| {
+            touch.monitor.clear_payload();
             Ok(())
         })
     }
@@ -234,8 +275,8 @@ pub unsafe extern "C" fn cs_monitor_update_external(
 pub unsafe extern "C" fn cs_monitor_reset(monitor: *mut cs_monitor) -> cs_status {
     // SAFETY: the caller's promise.
     unsafe {
-        alone(monitor, |monitor| {
-            monitor.reset();
+        alone(monitor, |touch| {
+            touch.monitor.reset();
             Ok(())
         })
     }

@@ -61,13 +61,17 @@ pub struct cs_report {
     pub external_torque: *mut f64,
     /// The same without wanted contacts and stops of joints.
     pub collision_torque: *mut f64,
+    /// Room for 6 numbers for each sensor, or NULL: the external wrench that it sees, world axes, at its origin; NaN where it
+    /// is left out (N, Nm).
+    pub wrenches: *mut f64,
 }
 
 impl cs_report {
     /// Takes on what a monitor reports.
     ///
     /// # Safety
-    /// `external_torque` and `collision_torque` are null or have room for `nv` numbers.
+    /// `external_torque` and `collision_torque` are null or have room for `nv` numbers, and `wrenches` is null or has room
+    /// for 6 for each sensor.
     pub(crate) unsafe fn fill(&mut self, report: &ContactReport) {
         self.time = report.time;
         self.significance = report.significance.unwrap_or(f64::NAN);
@@ -87,6 +91,13 @@ impl cs_report {
             if !out.is_null() {
                 // SAFETY: there is room for `nv` numbers, as the caller promises, and it is none of ours.
                 unsafe { out.copy_from_nonoverlapping(torque.as_ptr(), torque.len()) };
+            }
+        }
+        if !self.wrenches.is_null() {
+            for (sensor, wrench) in report.wrenches.iter().enumerate() {
+                let wrench: [f64; 6] = wrench.map_or([f64::NAN; 6], Into::into);
+                // SAFETY: there is room for 6 numbers for each sensor, as the caller promises.
+                unsafe { self.wrenches.add(6 * sensor).copy_from_nonoverlapping(wrench.as_ptr(), 6) };
             }
         }
     }

@@ -6,12 +6,11 @@ use std::path::Path;
 fn the_header_is_that_of_the_sources() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(folder.join("cbindgen.toml")).expect("it is in this folder");
-    let mut sources: Vec<_> =
-        ["status", "robot", "report", "monitor"].map(|name| folder.join(format!("src/{name}.rs"))).into();
-    let mut builder = cbindgen::Builder::new().with_config(config);
-    for source in sources.drain(..) {
-        builder = builder.with_src(source);
-    }
+    let library = std::fs::read_to_string(folder.join("src/lib.rs")).expect("it is in this folder");
+    let modules = library.lines().filter_map(|line| line.strip_prefix("mod ")?.strip_suffix(';'));
+    let builder = modules.fold(cbindgen::Builder::new().with_config(config), |builder, module| {
+        builder.with_src(folder.join(format!("src/{module}.rs")))
+    });
     let mut made = vec![];
     builder.generate().expect("sources that can be read").write(&mut made);
     let path = folder.join("include/contactsense.h");

@@ -16,7 +16,7 @@
 static bool told(const char *text) { return strstr(cs_error_message(), text) != NULL; }
 
 int main(int argc, char **argv) {
-  EXPECT(argc == 2);
+  EXPECT(argc == 3);
   EXPECT(strlen(cs_version()) >= 5 && strcmp(cs_error_message(), "") == 0);
 
   cs_robot *robot = (cs_robot *)argv;
@@ -49,8 +49,36 @@ int main(int argc, char **argv) {
   EXPECT(cs_monitor_new(NULL, &options, &monitor) == CS_ERROR_INPUT && told("robot"));
   EXPECT(cs_monitor_new(robot, NULL, &monitor) == CS_ERROR_INPUT && told("options"));
   options.torque_threshold = NULL;
+  cs_sensor sensor = cs_sensor_default("wrist", NULL);
+  options.sensor_count = 1;
+  EXPECT(cs_monitor_new(robot, &options, &monitor) == CS_ERROR_INPUT && told("sensors: must not be NULL"));
+  options.sensors = &sensor;
+  EXPECT(cs_monitor_new(robot, &options, &monitor) == CS_ERROR_INPUT && told("sensors: link"));
+  sensor.link = "elbow";
+  EXPECT(cs_monitor_new(robot, &options, &monitor) == CS_ERROR_INPUT && told("elbow"));
+  sensor.link = "iiwa_link_7";
+  sensor.rotation[0] = 2.0;
+  EXPECT(cs_monitor_new(robot, &options, &monitor) == CS_ERROR_INPUT && told("wrist"));
+  options.sensor_count = 0;
+  cs_wanted_point point = {.link = "elbow"};
+  options.wanted_points = &point;
+  options.wanted_point_count = 1;
+  EXPECT(cs_monitor_new(robot, &options, &monitor) == CS_ERROR_INPUT && told("elbow"));
+  options.wanted_point_count = 0;
   EXPECT(cs_monitor_new(robot, &options, &monitor) == CS_OK);
-  cs_robot_free(robot);  // the monitor lives on
+
+  cs_calibration *calibration = (cs_calibration *)argv;
+  EXPECT(cs_calibration_load("no_such_file.yaml", &calibration) == CS_ERROR_INPUT && told("no_such_file.yaml"));
+  EXPECT(!calibration && cs_calibration_load(argv[1], &calibration) == CS_ERROR_INPUT && !calibration);
+  EXPECT(cs_calibration_load(NULL, &calibration) == CS_ERROR_INPUT && told("path"));
+  EXPECT(cs_calibration_load(argv[2], NULL) == CS_ERROR_INPUT && told("calibration"));
+  EXPECT(cs_calibration_load(argv[2], &calibration) == CS_OK);
+  cs_calibration_free(NULL);
+  options.calibration = calibration;
+  cs_monitor *calibrated;
+  EXPECT(cs_monitor_new(robot, &options, &calibrated) == CS_OK);
+  cs_calibration_free(calibration);
+  cs_robot_free(robot);  // monitors live on
 
   double q[7] = {0}, v[7] = {0}, tau[7] = {0}, nan[7] = {0, 0, NAN};
   cs_report report = {0};
@@ -64,6 +92,15 @@ int main(int argc, char **argv) {
   EXPECT(cs_monitor_update(monitor, &sample, &report) == CS_ERROR_INPUT && told("tau"));
   sample.tau = tau;
   EXPECT(cs_monitor_update(monitor, &sample, &report) == CS_OK && !report.collision && isnan(report.significance));
+  EXPECT(cs_monitor_update(calibrated, &sample, &report) == CS_OK && !isnan(report.significance));
+  cs_monitor_free(calibrated);
+  double com[3] = {0.0, 0.0, 0.1};
+  EXPECT(cs_monitor_set_payload(monitor, "elbow", 1.0, com) == CS_ERROR_INPUT && told("elbow"));
+  EXPECT(cs_monitor_set_payload(monitor, "iiwa_link_7", -1.0, com) == CS_ERROR_INPUT && told("mass"));
+  EXPECT(cs_monitor_set_payload(monitor, "iiwa_link_7", 1.0, NULL) == CS_ERROR_INPUT && told("com"));
+  EXPECT(cs_monitor_set_payload(monitor, "iiwa_link_7", 1.0, com) == CS_OK);
+  EXPECT(cs_monitor_clear_payload(monitor) == CS_OK && cs_monitor_miss(monitor, 0.001) == CS_OK);
+  EXPECT(cs_monitor_tare(monitor) == CS_ERROR_INPUT || cs_monitor_tare(monitor) == CS_OK);
   EXPECT(cs_monitor_update_external(monitor, &sample, &report) == CS_ERROR_INPUT && told("reset"));
   EXPECT(cs_monitor_reset(monitor) == CS_OK);
   sample.v = NULL;
