@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import yaml
 
 from ..errors import InputError
 from .entries import Entries
 from .file_layout import FORMAT, JOINT_FIELDS, NOISE_FIELDS, REVERSALS, ROBOT_FIELDS, nameless
+from .yaml_text import parsed
 
 # A moment of inertia below zero by this share of the largest is rounding.
 ROUNDING = 1e-6
@@ -25,7 +25,7 @@ def content_of(file: str, text: str) -> dict[str, Any]:
     Raises:
         InputError: names the file, the joint or link, and the entry.
     """
-    entries = Entries(file, _parsed(file, text))
+    entries = Entries(file, parsed(file, text))
     found = entries.take("format", str(FORMAT))
     if found is True or found != FORMAT:
         raise InputError(
@@ -62,37 +62,6 @@ def content_of(file: str, text: str) -> dict[str, Any]:
     content["notes"] = entries.texts("notes", "texts")
     entries.done()
     return content
-
-
-def _parsed(file: str, text: str) -> Any:
-    try:
-        root = yaml.compose(text, yaml.SafeLoader)
-        _refuse_twice(file, root, set())
-        return yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        raise InputError(f"{file}: is no YAML: {' '.join(str(error).split())}") from None
-    except InputError:
-        raise
-    except (RecursionError, ValueError) as error:  # too deep; dates that do not exist
-        raise InputError(f"{file}: cannot be read: {error}") from None
-
-
-def _refuse_twice(file: str, node: Any, seen: set[int]) -> None:
-    """Refuses a name that stands twice in a mapping, of which YAML would drop the first."""
-    if id(node) in seen or not isinstance(node, yaml.CollectionNode):
-        return
-    seen.add(id(node))
-    if isinstance(node, yaml.MappingNode):
-        names = [key.value for key, _ in node.value if isinstance(key, yaml.ScalarNode)]
-        for name in names:
-            if names.count(name) > 1:
-                line = node.start_mark.line + 1
-                raise InputError(f"{file}: {name!r} stands twice in the mapping at line {line}")
-        children = [part for pair in node.value for part in pair]
-    else:
-        children = node.value
-    for child in children:
-        _refuse_twice(file, child, seen)
 
 
 def _read_joints(entries: Entries, joints: list[str], content: dict[str, Any]) -> None:

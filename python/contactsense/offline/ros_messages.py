@@ -70,12 +70,13 @@ class Messages:
         position: ArrayLike = (),
         velocity: ArrayLike = (),
         effort: ArrayLike = (),
+        frame: str = "world",
     ) -> Any:
         """A `JointState` of positions, velocities and efforts; empty where there are none."""
         values = {"position": position, "velocity": velocity, "effort": effort}
         return self._make(
             JOINT_STATE,
-            header=self.header(stamp),
+            header=self.header(stamp, frame),
             name=list(names),
             **{name: self._doubles(value) for name, value in values.items()},
         )

@@ -1,0 +1,74 @@
+"""Bytes of messages in and out: the node behind a transport that carries CDR."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..offline.ros_messages import JOINT_STATE, NANOSECONDS, WRENCH, Messages
+from .node import ContactNode
+from .output_messages import message_of
+from .values import KINDS, JointReading, Output
+
+# No joint state has as many bytes: what is longer is not read.
+_LARGEST = 1 << 16
+
+PublishedBytes = tuple[str, bytes]
+
+
+class CdrNode:
+    """Reads messages for a node and writes what it publishes. One thread at a time may use it.
+
+    Args:
+        node: that takes in the messages.
+        messages: that packs them.
+    """
+
+    def __init__(self, node: ContactNode, messages: Messages) -> None:
+        self.node = node
+        self._messages = messages
+
+    def joint_state(self, data: bytes, now: float) -> list[PublishedBytes]:
+        """Takes in a `JointState`, whatever its bytes are."""
+        try:
+            reading = self._reading(data)
+        except Exception as error:  # what rosbags raises on bytes that are no message is not stated
+            self.node.refuse(f"is no JointState ({type(error).__name__}: {error})")
+            return []
+        return [(topic, self._packed(output)) for topic, output in self.node.take(reading, now)]
+
+    def wrench(self, topic: str, data: bytes, now: float) -> None:
+        """Takes in a `WrenchStamped`, whatever its bytes are."""
+        try:
+            wrench = self._unpacked(data, WRENCH).wrench
+            parts = wrench.force, wrench.torque
+            reading = np.array([[part.x, part.y, part.z] for part in parts], dtype=np.float64).ravel()
+        except Exception as error:
+            self.node.refuse_wrench(f"is no WrenchStamped ({type(error).__name__}: {error})")
+            return
+        self.node.take_wrench(topic, reading, now)
+
+    def health(self, stamp: int, now: float) -> PublishedBytes:
+        """The diagnostics."""
+        topic, output = self.node.health(stamp, now)
+        return topic, self._packed(output)
+
+    def _reading(self, data: bytes) -> JointReading:
+        message = self._unpacked(data, JOINT_STATE)
+        stamp = message.header.stamp
+        return JointReading(
+            stamp.sec * NANOSECONDS + stamp.nanosec,
+            tuple(message.name),
+            message.position,
+            message.velocity,
+            message.effort,
+        )
+
+    def _unpacked(self, data: bytes, kind: str) -> Any:
+        if len(data) > _LARGEST:
+            raise ValueError(f"it has {len(data)} bytes")
+        return self._messages.unpack(data, kind)
+
+    def _packed(self, output: Output) -> bytes:
+        return self._messages.pack(message_of(self._messages, output), KINDS[type(output)])
