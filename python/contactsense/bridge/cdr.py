@@ -7,12 +7,15 @@ from typing import Any
 import numpy as np
 
 from ..offline.ros_messages import JOINT_STATE, NANOSECONDS, WRENCH, Messages
+from .layouts import JointLayout, Stencil
 from .node import ContactNode
 from .output_messages import message_of
-from .values import KINDS, JointReading, Output
+from .values import KINDS, ExternalTorque, JointReading, LinkWrench, Output
 
 # No joint state has as many bytes: what is longer is not read.
 _LARGEST = 1 << 16
+# As many layouts of joint states are remembered; a topic has one a sender.
+_MOST_LAYOUTS = 16
 
 PublishedBytes = tuple[str, bytes]
 
@@ -28,6 +31,9 @@ class CdrNode:
     def __init__(self, node: ContactNode, messages: Messages) -> None:
         self.node = node
         self._messages = messages
+        self._layouts: dict[int, JointLayout] = {}  # by size of the message
+        self._stencils: dict[str, Stencil] = {}  # of wrenches, by link
+        self._torque: Stencil | None = None
 
     def joint_state(self, data: bytes, now: float) -> list[PublishedBytes]:
         """Takes in a `JointState`, whatever its bytes are."""
@@ -55,6 +61,18 @@ class CdrNode:
         return topic, self._packed(output)
 
     def _reading(self, data: bytes) -> JointReading:
+        known = self._layouts.get(len(data))
+        found = None if known is None else known.read(data)
+        if found is None:
+            found = self._unpacked_reading(data)
+            layout = JointLayout.of(data, found)
+            if layout is not None:
+                if len(self._layouts) >= _MOST_LAYOUTS:
+                    self._layouts.clear()
+                self._layouts[len(data)] = layout
+        return found
+
+    def _unpacked_reading(self, data: bytes) -> JointReading:
         message = self._unpacked(data, JOINT_STATE)
         stamp = message.header.stamp
         return JointReading(
@@ -71,4 +89,18 @@ class CdrNode:
         return self._messages.unpack(data, kind)
 
     def _packed(self, output: Output) -> bytes:
+        match output:
+            case ExternalTorque():
+                if self._torque is None:
+                    self._torque = Stencil(self._packed_anew(output), len(output.torque))
+                return self._torque.filled(output.stamp, output.torque)
+            case LinkWrench():
+                stencil = self._stencils.get(output.link)
+                if stencil is None:
+                    stencil = Stencil(self._packed_anew(output), len(output.wrench))
+                    self._stencils[output.link] = stencil
+                return stencil.filled(output.stamp, output.wrench)
+        return self._packed_anew(output)
+
+    def _packed_anew(self, output: Output) -> bytes:
         return self._messages.pack(message_of(self._messages, output), KINDS[type(output)])

@@ -52,8 +52,6 @@ class HealthReport:
 
     def __init__(self, robot: str, rate: float) -> None:
         self._robot, self._rate = robot, rate
-        if not lately.taken:
-            values |= {"collision": "unknown", "links": ""}
         self._before, self._time = Counts(), 0.0
         self.longest_tick = 0.0  # since the last report [s]
         self.reason = ""  # of the last message that was refused
@@ -94,6 +92,8 @@ class HealthReport:
             "contacts": str(counts.contacts),
             **state,
         }
+        if not lately.taken:
+            values |= {"collision": "unknown", "links": ""}
         self._before, self._time, self.longest_tick = replace(counts), now, 0.0
         return Health(stamp, level, self._robot, message, values)
 

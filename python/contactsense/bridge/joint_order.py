@@ -62,14 +62,15 @@ class JointOrder:
 
     def torques(self, v: Row) -> Row:
         """One number a joint, in the order of `names`."""
-        return self._columns.velocities(v[None])[0]
+        row: Row = self._columns.velocities(v[None])[0]
+        return row
 
     def _ordered(self, field: str, values: Row, message: JointReading, places: Places) -> Row:
         if len(values) != len(message.names):
             if not len(values):
                 raise InputError(f"{field}: is empty")
             raise InputError(f"{field}: has {len(values)} numbers for {len(message.names)} joints")
-        return values[places].reshape(1, -1)
+        return np.take(values, places)[None]
 
     def _learn(self, names: tuple[str, ...]) -> Places | InputError:
         """Remembers also what is wrong with names: it is the same with each message."""
