@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from ..offline.ros_messages import JOINT_STATE, NANOSECONDS, WRENCH, Messages
+from ..offline.ros_messages import JOINT_STATE, NANOSECONDS, WRENCH, Marker, Messages
 from .layouts import JointLayout, Stencil
 from .node import ContactNode
 from .output_messages import message_of
-from .values import KINDS, ExternalTorque, JointReading, LinkWrench, Output
+from .values import KINDS, Drawing, Drawings, ExternalTorque, Health, JointReading, LinkWrench, Output
 
 # No joint state has as many bytes: what is longer is not read.
 _LARGEST = 1 << 16
@@ -34,6 +34,7 @@ class CdrNode:
         self._layouts: dict[int, JointLayout] = {}  # by size of the message
         self._stencils: dict[str, Stencil] = {}  # of wrenches, by link
         self._torque: Stencil | None = None
+        self._warm_up()
 
     def joint_state(self, data: bytes, now: float) -> list[PublishedBytes]:
         """Takes in a `JointState`, whatever its bytes are."""
@@ -59,6 +60,18 @@ class CdrNode:
         """The diagnostics."""
         topic, output = self.node.health(stamp, now)
         return topic, self._packed(output)
+
+    def _warm_up(self) -> None:
+        """Lets rosbags make its code for each type now: in a tick that would take tens of milliseconds."""
+        nothing = np.zeros(0)
+        for output in (
+            ExternalTorque(0, (), nothing),
+            LinkWrench(0, "", np.zeros(6)),
+            Drawings(0, "", 0, (Drawing("", 0, Marker.ARROW, [np.zeros(3), np.zeros(3)]),)),
+            Health(0, 0, "", "", {"": ""}),
+        ):
+            kind = KINDS[type(output)]
+            self._messages.unpack(self._packed_anew(output), kind)
 
     def _reading(self, data: bytes) -> JointReading:
         known = self._layouts.get(len(data))

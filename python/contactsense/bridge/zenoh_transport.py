@@ -23,6 +23,9 @@ PERIOD = 1.0
 # Joint states that wait while the bridge is busy; of more, the oldest are left out: a second at 1 kHz. A
 # queue that is bounded otherwise would hold up the sender.
 _WAITING = 1000
+# Nobody is looked for in the network. Sixteen messages may wait to be sent, in place of two: where the thread
+# that sends them does not get a core for a millisecond, Zenoh would leave some out.
+SETTINGS = {"scouting/multicast/enabled": "false", "transport/link/tx/queue/size/data": "16"}
 # Where others reach a bridge that connects to nobody: this machine only.
 LISTEN = "tcp/127.0.0.1:7448"
 # Of one that connects to others, at any port.
@@ -64,7 +67,8 @@ class Endpoints:
         given = {"connect": self.connect, "listen": self.own}
         if self.file is None:
             settings = zenoh.Config()
-            settings.insert_json5("scouting/multicast/enabled", "false")
+            for name, value in SETTINGS.items():
+                settings.insert_json5(name, value)
         else:
             try:
                 settings = zenoh.Config.from_file(self.file)
