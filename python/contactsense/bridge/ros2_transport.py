@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -35,11 +36,13 @@ class Ros2Bridge:
     def __init__(self, configuration: Configuration, node: ContactNode) -> None:
         try:
             import rclpy
+            from rclpy.executors import ExternalShutdownException
             from rclpy.node import Node
             from rclpy.qos import qos_profile_sensor_data
         except ModuleNotFoundError as missing:
             raise InputError("transport: rclpy is not there; source a ROS 2 workspace first") from missing
-        self._node, self._messages, self._rclpy = node, Ros2Messages(), rclpy
+        self._node, self._messages = node, Ros2Messages()
+        self._rclpy, self._end = rclpy, ExternalShutdownException
         rclpy.init()
         self._ros: Any = Node(configuration.node)
         make = self._messages.kind
@@ -62,7 +65,8 @@ class Ros2Bridge:
 
     def run(self) -> None:
         """Spins until Ctrl-C or the end of the context of ROS 2."""
-        self._rclpy.spin(self._ros)
+        with suppress(self._end):
+            self._rclpy.spin(self._ros)
 
     def close(self) -> None:
         """Ends the node."""

@@ -76,6 +76,7 @@ def command(
         try:
             bridge.run()
         finally:
+            gc.unfreeze()
             print(node.summary(), flush=True)
 
 
