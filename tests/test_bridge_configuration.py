@@ -24,6 +24,7 @@ wrench_threshold: 3
 observer_gain: 80.0
 bias_time: 4.0
 effort: external
+torque_constants: [-1.0, 0.1]
 rate: 500
 sensors:
   wrist: {link: tool, topic: wrist/wrench, convention: support, wanted: true}
@@ -52,6 +53,7 @@ def test_every_parameter_is_read() -> None:
         observer_gain=80.0,
         bias_time=4.0,
         effort="external",
+        torque_constants=[-1.0, 0.1],
         rate=500.0,
         sensors={"wrist": SensorTopic("tool", "/wrist/wrench", "support", True)},
         wrench_timeout=0.2,
@@ -90,6 +92,10 @@ def test_a_parameter_file_of_ros_is_the_same(name: str) -> None:
         ("robot: iiwa14\nrate: 10\nrate: 20", "'rate' stands twice"),
         ("robot: iiwa14\ntorque_threshold: [1, x]", "f: torque_threshold: must be a positive number"),
         ("robot: iiwa14\ntorque_threshold: []", "f: torque_threshold: must be a positive number"),
+        (
+            "robot: iiwa14\ntorque_constants: 0",
+            "f: torque_constants: must be a finite number other than zero",
+        ),
         ("robot: iiwa14\neffort: current", "f: effort must be motor or external, not 'current'"),
         ("robot: iiwa14\njoint_states: 'a b'", "f: joint_states must be a topic such as /joint_states"),
         ("robot: iiwa14\nprefix: a/*", "f: prefix must be a topic"),
@@ -149,6 +155,8 @@ def test_a_threshold_for_each_joint() -> None:
 
 
 def test_what_does_not_fit_the_robot_is_refused() -> None:
+    with pytest.raises(cs.InputError, match="torque_constants: has 2 numbers for 7 joints"):
+        node("torque_constants: [1.0, 2.0]\n")
     with pytest.raises(cs.InputError, match="nowhere"):
         node("sensors: {wrist: {link: nowhere, topic: w}}\n")
     with pytest.raises(cs.InputError, match="floating base"):

@@ -165,6 +165,18 @@ def test_messages_of_other_joints_are_no_fault() -> None:
     assert (bridge.counts.other_joints, bridge.counts.refused) == (10, 0)
 
 
+def test_fingers_that_are_called_like_joints_are_other_joints() -> None:
+    bridge = node()
+    two = {"position": Q[:2], "velocity": ZERO[:2], "effort": ZERO[:2]}
+    fingers = ("finger_joint_1", "finger_joint_2")
+    bridge.take(reading(0, names=fingers, **two), 0.0)
+    assert bridge.counts.refused == 1  # nothing says yet that these are not the arm's
+    bridge.take(reading(1), 1e-3)
+    for _ in range(3):
+        assert bridge.take(reading(2, names=fingers, **two), 2e-3) == []
+    assert (bridge.counts.refused, bridge.counts.other_joints) == (1, 3)
+
+
 @pytest.mark.parametrize(
     ("changed", "reason"),
     [
@@ -249,6 +261,17 @@ def test_the_external_torque_of_a_vendor_is_taken_as_it_is() -> None:
     found = run(bridge, np.tile(PUSH, (300, 1)))
     assert np.allclose(on(found, TORQUE)[-1].torque, PUSH)
     assert is_the_push(on(found, CONTACTS)[-1])
+
+
+def test_efforts_are_scaled_by_torque_constants() -> None:
+    constants = [-1.0, 0.5, 0.1, 2.0, 1.0, -0.1, 1.0]
+    wanted = on(run(node(), efforts(200, range(100, 200))), TORQUE)
+    found = on(
+        run(node(f"torque_constants: {constants}\n"), efforts(200, range(100, 200)) / constants), TORQUE
+    )
+    assert np.allclose([it.torque for it in found], [it.torque for it in wanted])
+    turned = run(node("effort: external\ntorque_constants: -1\n"), np.tile(-PUSH, (300, 1)))
+    assert np.allclose(on(turned, TORQUE)[-1].torque, PUSH)
 
 
 SENSOR = "sensors: {wrist: {link: iiwa_link_7, topic: /wrist/wrench}}\n"

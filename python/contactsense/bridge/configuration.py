@@ -9,7 +9,7 @@ from typing import Literal
 
 Effort = Literal["motor", "external"]
 Geometry = Literal["collision", "visual", "collision_or_visual"]
-Threshold = float | list[float]
+PerJoint = float | list[float]
 
 
 @dataclass(frozen=True)
@@ -44,6 +44,7 @@ class Configuration:
         observer_gain: [1/s].
         bias_time: time constant of the bias [s]; None for the monitor's own.
         effort: what the efforts are: torques of the motors, or an external torque.
+        torque_constants: torque for each unit of effort, one or one a joint [Nm, N].
         rate: of the joint states [Hz].
         sensors: by name.
         wrench_timeout: age from which on a reading of a sensor is none [s].
@@ -62,11 +63,12 @@ class Configuration:
     geometry: Geometry = "collision"
     locked_joints: Mapping[str, float] = field(default_factory=dict)
     calibration: Path | None = None
-    torque_threshold: Threshold | None = None
+    torque_threshold: PerJoint | None = None
     wrench_threshold: float = 2.0
     observer_gain: float = 50.0
     bias_time: float | None = None
     effort: Effort = "motor"
+    torque_constants: PerJoint = 1.0
     rate: float = 1000.0
     sensors: Mapping[str, SensorTopic] = field(default_factory=dict)
     wrench_timeout: float = 0.1

@@ -42,6 +42,7 @@ class JointOrder:
         self._columns = JointColumns(robot)
         self.names: tuple[str, ...] = tuple(self._columns.names)
         self._known: dict[tuple[str, ...], Places | InputError] = {}
+        self._senders: set[str] = set()  # names of joints in messages that had all
 
     def vectors(self, message: JointReading) -> tuple[Row, Row, Row]:
         """Configuration, velocity and effort.
@@ -60,6 +61,17 @@ class JointOrder:
         columns = self._columns
         return columns.configuration(q)[0], columns.velocity(v)[0], columns.velocity(effort)[0]
 
+    def one_each(self, name: str, values: float | list[float]) -> Row:
+        """Numbers `(nv,)` of a parameter with one number, or one a joint in the order of `names`.
+
+        Raises:
+            InputError: there are more or fewer numbers than joints.
+        """
+        if isinstance(values, list) and len(values) != len(self.names):
+            raise InputError(f"{name}: has {len(values)} numbers for {len(self.names)} joints")
+        row: Row = self._columns.velocity(np.broadcast_to(values, (1, len(self.names))))[0]
+        return row
+
     def torques(self, v: Row) -> Row:
         """One number a joint, in the order of `names`."""
         row: Row = self._columns.velocities(v[None])[0]
@@ -74,9 +86,10 @@ class JointOrder:
 
     def _learn(self, names: tuple[str, ...]) -> Places | InputError:
         """Remembers also what is wrong with names: it is the same with each message."""
+        found = self._places(names)
         if len(self._known) >= _MOST:
             self._known.clear()
-        self._known[names] = found = self._places(names)
+        self._known[names] = found
         return found
 
     def _places(self, names: tuple[str, ...]) -> Places | InputError:
@@ -89,5 +102,12 @@ class JointOrder:
             return OtherJointsError("name: none of the robot's joints is there")
         missing = [name for name in self.names if name not in found]
         if missing:
-            return MissingJointsError(missing)
+            # Fingers may be called nearly as joints of the arm; those of the arm are known by now.
+            is_other = self._senders and self._senders.isdisjoint(names)
+            return OtherJointsError("name: is of other joints") if is_other else MissingJointsError(missing)
+        if not self._senders:
+            self._known.clear()
+        elif len(self._senders) > _MOST_NAMES:
+            self._senders.clear()
+        self._senders.update(found.values())
         return np.array([names.index(found[name]) for name in self.names], dtype=np.intp)

@@ -1,7 +1,7 @@
 """Messages that change in their numbers only, read and written by these.
 
-A controller sends the same names with every joint state. Reading and writing them anew takes longer than most
-ticks: 14 and 16 us of a bridge at 1 kHz, in place of 3 and 1 us.
+A controller sends the same names with every joint state. By rosbags, reading one takes 14 us and writing a
+torque 16 us, more than most ticks of the monitor; so, it takes 3 and 1 us.
 """
 
 from __future__ import annotations

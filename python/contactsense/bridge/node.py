@@ -36,11 +36,12 @@ class ContactNode:
     def __init__(self, configuration: Configuration, robot: Robot) -> None:
         self._monitor = monitor_of(configuration, robot)
         self._robot = robot
+        self._joints = JointOrder(robot)
+        self._constants = self._joints.one_each("torque_constants", configuration.torque_constants)
         self._is_external = configuration.effort == "external"
         self._torques_to = configuration.external_torque_topic
         self._located_to, self._others_to = configuration.contacts_topic, configuration.not_located_topic
         self._markers_to, self._health_to = configuration.markers_topic, configuration.diagnostics
-        self._joints = JointOrder(robot)
         self._stamps = Stamps(_GAP / configuration.rate)
         frame = configuration.frame or robot.all_link_names[0]
         self._drawn = Drawn(frame, configuration.marker_rate)
@@ -141,6 +142,7 @@ class ContactNode:
 
     def _tick(self, message: JointReading, now: float) -> list[Published]:
         q, v, effort = self._joints.vectors(message)
+        effort *= self._constants
         if self._stamps.is_restart(message.stamp):
             self._monitor.reset()
         step = self._stamps.step(message.stamp)

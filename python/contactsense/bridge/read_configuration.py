@@ -13,7 +13,7 @@ from ..calibration.file_layout import Rule
 from ..calibration.yaml_text import parsed
 from ..errors import InputError
 from ..robot import DESCRIPTIONS
-from .configuration import Configuration, SensorTopic, Threshold
+from .configuration import Configuration, PerJoint, SensorTopic
 
 T = TypeVar("T")
 Choice = TypeVar("Choice", bound=str)
@@ -57,11 +57,12 @@ def configuration_of(file: str, text: str, folder: Path) -> Configuration:
     optional("geometry", lambda name: _one_of(entries, name, ("collision", "visual", "collision_or_visual")))
     optional("locked_joints", lambda name: _positions(entries.inner(name)))
     optional("calibration", path)
-    optional("torque_threshold", lambda name: _threshold(entries, name))
+    optional("torque_threshold", lambda name: _per_joint(entries, name, "positive"))
     optional("wrench_threshold", lambda name: entries.number(name, "N, Nm", "positive"))
     optional("observer_gain", lambda name: entries.number(name, "1/s", "positive"))
     optional("bias_time", lambda name: entries.number(name, "s", "positive"))
     optional("effort", lambda name: _one_of(entries, name, ("motor", "external")))
+    optional("torque_constants", lambda name: _per_joint(entries, name, "not zero"))
     optional("rate", lambda name: entries.number(name, "Hz", "positive"))
     optional("sensors", lambda name: _sensors(entries.inner(name)))
     optional("wrench_timeout", lambda name: entries.number(name, "s", "positive"))
@@ -99,10 +100,8 @@ def _positions(joints: Entries) -> dict[str, float]:
     return {name: joints.number(name, "rad, m") for name in joints.names()}
 
 
-def _threshold(entries: Entries, name: str) -> Threshold:
-    rule: Rule = "positive"
-    wanted = "a positive number, or a list of them [Nm, N]"
-    value = entries.take(name, wanted)
+def _per_joint(entries: Entries, name: str, rule: Rule) -> PerJoint:
+    value = entries.take(name, "a number, or a list of one a joint [Nm, N]")
     if isinstance(value, list) and value:
         return entries.listed(name, value, len(value), "Nm, N", rule)
     return entries.listed(name, [value], 1, "Nm, N", rule)[0]
