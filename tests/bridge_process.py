@@ -15,8 +15,8 @@ from typing import Any
 import zenoh
 from ctrl_c import HEARS_CTRL_C
 
+from contactsense.bridge.endpoints import SETTINGS
 from contactsense.bridge.rmw_zenoh import Attachments, key_expression
-from contactsense.bridge.zenoh_transport import SETTINGS
 from contactsense.offline.ros_messages import DIAGNOSTICS, JOINT_STATE, MARKERS, WRENCH, Messages
 
 MESSAGES = Messages()

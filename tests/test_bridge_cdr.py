@@ -38,6 +38,10 @@ def reading_of(data: bytes) -> JointReading:
     return JointReading(stamp, tuple(it.name), it.position, it.velocity, it.effort)
 
 
+def taken(bridge: CdrNode, data: bytes, now: float) -> list[tuple[str, bytes]]:
+    return list(bridge.joint_state(data, now))
+
+
 def same(a: JointReading | None, b: JointReading) -> bool:
     if a is None or (a.stamp, a.names) != (b.stamp, b.names):
         return False
@@ -49,7 +53,7 @@ def test_a_push_comes_out_as_bytes_of_ros() -> None:
     bridge = CdrNode(node(), MESSAGES)
     found: dict[str, list] = {name: [] for name in KINDS}
     for tick, row in enumerate(efforts(500, range(100, 400))):
-        for topic, data in bridge.joint_state(packed(tick, row), 1e-3 * tick):
+        for topic, data in taken(bridge, packed(tick, row), 1e-3 * tick):
             name = topic.removeprefix("/contactsense/")
             found[name].append(MESSAGES.unpack(data, KINDS[name]))
     assert len(found["external_torque"]) == 500
@@ -70,11 +74,11 @@ def test_a_push_comes_out_as_bytes_of_ros() -> None:
 @given(st.binary(max_size=500))
 def test_random_bytes_are_counted(data: bytes) -> None:
     bridge = CdrNode(node(SENSOR), MESSAGES)
-    assert bridge.joint_state(data, 0.0) == []
+    assert taken(bridge, data, 0.0) == []
     bridge.wrench("/wrist/wrench", data, 0.0)
     assert bridge.node.counts.received == 1
     assert bridge.node.counts.taken == 0
-    assert bridge.joint_state(packed(1), 1e-3)
+    assert taken(bridge, packed(1), 1e-3)
 
 
 @settings(max_examples=500, deadline=None)
@@ -82,14 +86,14 @@ def test_random_bytes_are_counted(data: bytes) -> None:
 def test_broken_messages_are_read_as_rosbags_reads_them_or_counted(data: st.DataObject) -> None:
     """Of a message that was sound, some bytes are others, or it is cut off."""
     bridge, plain = CdrNode(node(), MESSAGES), CdrNode(node(), MESSAGES)
-    bridge.joint_state(packed(0), 0.0)
-    plain.joint_state(packed(0), 0.0)
+    taken(bridge, packed(0), 0.0)
+    taken(plain, packed(0), 0.0)
     broken = bytearray(packed(1))
     for _ in range(data.draw(st.integers(1, 4))):
         broken[data.draw(st.integers(0, len(broken) - 1))] = data.draw(st.integers(0, 255))
     message = bytes(broken[: data.draw(st.integers(len(broken) // 2, len(broken)))])
     plain._layouts.clear()
-    found, wanted = bridge.joint_state(message, 1e-3), plain.joint_state(message, 1e-3)
+    found, wanted = taken(bridge, message, 1e-3), taken(plain, message, 1e-3)
     assert found == wanted
     assert bridge.node.counts.received == plain.node.counts.received == 2
     assert bridge.node.counts.refused == plain.node.counts.refused
@@ -98,7 +102,7 @@ def test_broken_messages_are_read_as_rosbags_reads_them_or_counted(data: st.Data
 
 def test_large_messages_are_not_read() -> None:
     bridge = CdrNode(node(), MESSAGES)
-    assert bridge.joint_state(packed() + bytes(1 << 16), 0.0) == []
+    assert taken(bridge, packed() + bytes(1 << 16), 0.0) == []
     assert "it has 65" in bridge.node.summary()
 
 
@@ -142,7 +146,7 @@ def test_other_layouts_are_not_taken_for_the_usual_one() -> None:
     )
     assert JointLayout.of(large_first, reading_of(large_first)) is None
     bridge = CdrNode(node(), MESSAGES)
-    assert bridge.joint_state(large_first, 0.0)
+    assert taken(bridge, large_first, 0.0)
 
 
 def test_stencils_write_what_rosbags_writes() -> None:
@@ -162,8 +166,8 @@ def test_messages_of_two_senders_come_in_turns() -> None:
     bridge = CdrNode(node(), MESSAGES)
     finger = MESSAGES.pack(MESSAGES.joint_state(START, ("finger",), [0.0], [0.0], [0.0]), JOINT_STATE)
     for tick in range(20):
-        assert bridge.joint_state(packed(tick), 1e-3 * tick)
-        assert bridge.joint_state(finger, 1e-3 * tick) == []
+        assert taken(bridge, packed(tick), 1e-3 * tick)
+        assert taken(bridge, finger, 1e-3 * tick) == []
     assert (bridge.node.counts.taken, bridge.node.counts.other_joints, bridge.node.counts.refused) == (
         20,
         20,
@@ -175,5 +179,5 @@ def test_messages_of_two_senders_come_in_turns() -> None:
 def test_layouts_are_not_remembered_without_end() -> None:
     bridge = CdrNode(node(), MESSAGES)
     for length in range(1, 60):
-        bridge.joint_state(packed(names=("x" * length, *NAMES[1:])), 0.0)
+        taken(bridge, packed(names=("x" * length, *NAMES[1:])), 0.0)
     assert len(bridge._layouts) <= 16

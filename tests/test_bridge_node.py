@@ -287,7 +287,13 @@ def test_sensors_are_read_by_topic_until_their_readings_are_old() -> None:
     for tick in (1, 2):  # the first reading starts its filter
         assert bridge.take(reading(tick), 1e-3 * tick)
     assert health(bridge, 0.2).values["sensors without reading"] == ""
-    bridge.take(reading(3), 0.2)
+    bridge.take_wrench("/wrist/wrench", np.array([np.inf, 0.0, 0.0, 0.0, 0.0, 0.0]), 0.003)
+    assert bridge.take(reading(3), 0.003)
+    assert health(bridge, 0.25).values["sensors without reading"] == "wrist"
+    bridge.take_wrench("/wrist/wrench", np.array([0.0, 0.0, 50.0, 0.0, 0.0, 0.0]), 0.004)
+    for tick in (4, 5):
+        assert bridge.take(reading(tick), 1e-3 * tick)
+    bridge.take(reading(6), 0.2)
     assert health(bridge, 0.3).values["sensors without reading"] == "wrist"
 
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import zenoh
 
+from contactsense.bridge.endpoints import SETTINGS
 from contactsense.bridge.rmw_zenoh import key_expression
-from contactsense.bridge.zenoh_transport import SETTINGS
 from contactsense.offline.ros_messages import JOINT_STATE, NANOSECONDS, WRENCH
 
 JOINTS, TORQUE, CONTACTS = "joint_states", "contactsense/external_torque", "contactsense/contacts"

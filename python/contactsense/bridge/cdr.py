@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -36,14 +37,14 @@ class CdrNode:
         self._torque: Stencil | None = None
         self._warm_up()
 
-    def joint_state(self, data: bytes, now: float) -> list[PublishedBytes]:
-        """Takes in a `JointState`, whatever its bytes are."""
+    def joint_state(self, data: bytes, now: float) -> Iterator[PublishedBytes]:
+        """Takes in a `JointState`, whatever its bytes are; each result is packed when its turn comes."""
         try:
             reading = self._reading(data)
         except Exception as error:  # what rosbags raises on bytes that are no message is not stated
             self.node.refuse(f"is no JointState ({type(error).__name__}: {error})")
-            return []
-        return [(topic, self._packed(output)) for topic, output in self.node.take(reading, now)]
+            return iter(())
+        return ((topic, self._packed(output)) for topic, output in self.node.take(reading, now))
 
     def wrench(self, topic: str, data: bytes, now: float) -> None:
         """Takes in a `WrenchStamped`, whatever its bytes are."""

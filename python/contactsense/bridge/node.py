@@ -18,6 +18,8 @@ from .values import ExternalTorque, Health, JointReading, LinkWrench, Published,
 
 # Steps longer than so many configured ones leave a gap.
 _GAP = 5.0
+# Characters of a reason that are kept: it may tell of what was received.
+_LONGEST_REASON = 200
 
 
 class ContactNode:
@@ -97,10 +99,10 @@ class ContactNode:
         return published
 
     def take_wrench(self, topic: str, reading: Row, now: float) -> None:
-        """Keeps the newest reading `(6,)` [N, Nm] of the sensor of a topic."""
+        """Keeps the newest reading `(6,)` of the sensor of a topic [N, Nm]; what is not finite is none."""
         row = self._row_of.get(topic)
         if row is not None:
-            self._wrenches[row] = reading
+            self._wrenches[row] = reading if np.isfinite(reading).all() else np.nan
             self._wrench_times[row] = now
 
     def refuse(self, reason: str) -> None:
@@ -181,4 +183,4 @@ class ContactNode:
 
     def _refused(self, reason: str) -> None:
         self.counts.refused += 1
-        self._health.reason = reason
+        self._health.reason = reason[:_LONGEST_REASON]

@@ -12,10 +12,11 @@ import typer
 
 from ..bridge.assemble import robot_of
 from ..bridge.configuration import Configuration
+from ..bridge.endpoints import Endpoints
 from ..bridge.node import ContactNode
 from ..bridge.read_configuration import read_configuration
 from ..bridge.ros2_transport import Ros2Bridge
-from ..bridge.zenoh_transport import Endpoints, ZenohBridge
+from ..bridge.zenoh_transport import ZenohBridge
 from ..errors import InputError
 from .robot_files import package_folders, summary
 
