@@ -18,7 +18,7 @@ from ..bridge.read_configuration import read_configuration
 from ..bridge.ros2_transport import Ros2Bridge
 from ..bridge.zenoh_transport import ZenohBridge
 from ..errors import InputError
-from .robot_files import package_folders, summary
+from .robot_files import package_folders, quietly, summary
 
 
 class Transport(str, Enum):
@@ -60,7 +60,7 @@ def command(
     if transport is not Transport.zenoh and of_zenoh:
         raise InputError("transport: --connect, --listen and --zenoh-config are of zenoh")
     configuration = read_configuration(config)
-    robot = robot_of(configuration, package_folders(configuration.robot))
+    robot = quietly(robot_of, configuration, package_folders(configuration.robot))
     for line in summary(robot.warnings):
         print(f"{robot.name}: {line}", file=sys.stderr)
     node = ContactNode(configuration, robot)
