@@ -14,7 +14,7 @@ import pytest
 import contactsense as cs
 
 ROOT = Path(__file__).resolve().parents[1]
-PEERS = ("trimesh", "embreex", "igl", "fcpw", "idyntree", "scipy", "rosbags", "mcap", "viser")
+PEERS = ("trimesh", "embreex", "igl", "fcpw", "idyntree", "scipy", "rosbags", "mcap", "viser", "zenoh")
 LEAST = {
     "observer": 2,
     "compensation": 2,
@@ -26,6 +26,7 @@ LEAST = {
     "particle_filter": 5,
     "log": 4,
     "view": 1,
+    "bridge": 1,
 }
 
 
@@ -59,6 +60,7 @@ def test_every_comparison_times_ours_beside_peers(report: dict, name: str) -> No
         "particle_filter": "particle filter",
         "log": "log, 12,000 JointStates",
         "view": "view",
+        "bridge": "bridge",
     }
     found = [c for c in report["comparisons"] if c["task"].startswith(starts[name])]
     assert len(found) >= LEAST[name]
@@ -100,5 +102,5 @@ def test_comparisons_without_the_peers_run(name: str) -> None:
 def test_unknown_comparison_is_refused() -> None:
     done = run("nothing")
     assert done.returncode == 2
-    names = "observer, compensation, monitor, noisy, contact_map, closest, rays, particle_filter, log, view"
+    names = "compensation, monitor, noisy, contact_map, closest, rays, particle_filter, log, view, bridge"
     assert names in done.stderr

@@ -121,8 +121,10 @@ def test_readme_snippet_finds_the_contact(tmp_path: Path) -> None:
 )
 def test_page_snippets_run(page: Path, tmp_path: Path) -> None:
     """And print what the page says."""
-    if "from contactsense import sim" in page.read_text(encoding="utf-8"):
-        pytest.importorskip("mujoco")
+    text = page.read_text(encoding="utf-8")
+    for import_, package in (("from contactsense import sim", "mujoco"), ("import zenoh", "zenoh")):
+        if import_ in text:
+            pytest.importorskip(package)
     for block, printed in zip(blocks(page), run_page(page, tmp_path), strict=True):
         if block.stated is not None:
             assert differences(block.stated, printed) == [], printed

@@ -11,7 +11,7 @@ from .machine import describe, use_one_core
 
 NAMES = (
     *("observer", "compensation", "monitor", "noisy", "contact_map", "closest", "rays", "particle_filter"),
-    *("log", "view"),
+    *("log", "view", "bridge"),
 )
 
 
@@ -31,6 +31,7 @@ def main() -> int:
     import contactsense as cs
 
     from . import (
+        bridge,
         closest,
         compensation,
         contact_map,
@@ -61,6 +62,7 @@ def main() -> int:
         particle_filter,
         log,
         view,
+        bridge,
     )
     modules = dict(zip(NAMES, all_modules, strict=True))
     comparisons = []

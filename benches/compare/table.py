@@ -61,6 +61,8 @@ def _rows(comparison: Comparison) -> list[tuple[str, ...]]:
         limits.append(
             f"99.9 % is {comparison.tail_ratio:.2f}x <= {comparison.max_tail_ratio:g}x the second's"
         )
+    if comparison.lost is not None:
+        limits.append(f"{comparison.lost} lost <= 0")
     ends = ("", "", ", ".join(limits), VERDICTS[comparison.passed])
     task = comparison.task if comparison.unit == "us" else f"{comparison.task} [{comparison.unit}]"
     first = (task, ours.name, *_times(comparison, ours), *ends)
@@ -118,5 +120,6 @@ def _comparison_json(comparison: Comparison) -> dict[str, Any]:
         "min_ratio": comparison.min_ratio,
         "max_worst_us": comparison.max_worst_us,
         "max_tail_ratio": comparison.max_tail_ratio,
+        "lost": comparison.lost,
         "passed": comparison.passed,
     }

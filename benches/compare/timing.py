@@ -71,6 +71,7 @@ class Comparison:
     min_ratio: float | None = None  # of the second to ours
     max_worst_us: float | None = None  # of our slowest call, where `samples` are of single calls
     max_tail_ratio: float | None = None  # of our 99.9th percentile to the second's
+    lost: int | None = None  # messages that ours did not pass on, of which there may be none
     has_tail: bool = False  # whether `samples` are of single calls where nothing is asked of the slowest
     unit: str = "us"  # of samples and limits, where they are no times
 
@@ -91,10 +92,12 @@ class Comparison:
     @property
     def passed(self) -> bool | None:
         """None where nothing is asked."""
-        if all(it is None for it in (self.max_us, self.min_ratio, self.max_worst_us, self.max_tail_ratio)):
+        limits = self.max_us, self.min_ratio, self.max_worst_us, self.max_tail_ratio, self.lost
+        if all(it is None for it in limits):
             return None
         fast = self.max_us is None or self.timings[0].median <= self.max_us
         fast = fast and (self.max_worst_us is None or self.timings[0].tail[1] <= self.max_worst_us)
+        fast = fast and not self.lost
         fast = fast and (self.max_tail_ratio is None or self.tail_ratio <= self.max_tail_ratio)
         return fast and (self.min_ratio is None or self.ratio(self.timings[1]) >= self.min_ratio)
 

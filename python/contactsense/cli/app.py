@@ -18,7 +18,7 @@ from typer.core import TyperGroup
 from .. import ContactSenseError, __version__
 from .._extras import MissingExtraError
 from ..demo import command as demo
-from . import calibrate, diagnose, replay, view
+from . import bridge, calibrate, diagnose, replay, view
 from .exit_codes import INTERRUPTED
 
 STUDIES = "contactsense-studies"  # the distribution that adds `study`
@@ -66,7 +66,7 @@ def _study() -> None:
 
 
 def _add_commands() -> None:
-    for command in (demo, replay, calibrate, diagnose, view):
+    for command in (demo, replay, calibrate, diagnose, view, bridge):
         command.register(app)
     added = {entry.name: entry for entry in entry_points(group="contactsense.commands")}
     for entry in added.values():

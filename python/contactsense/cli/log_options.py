@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import fnmatch
-import logging
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -17,7 +16,7 @@ from .._core import ForceTorqueSensor
 from ..errors import InputError
 from ..log import Log, read_log
 from ..robot import DESCRIPTIONS, Robot
-from .robot_files import package_folders, summary
+from .robot_files import package_folders, quietly, summary
 
 _Geometry = Literal["collision", "visual", "collision_or_visual"]
 _GEOMETRIES: tuple[_Geometry, ...] = ("collision", "visual", "collision_or_visual")
@@ -114,7 +113,7 @@ class LogOptions:
                 f"geometry: must be collision, visual or collision_or_visual, not {self.geometry!r}"
             )
         load = partial(
-            _quietly,
+            quietly,
             Robot.from_urdf,
             self.robot,
             package_dirs=[*(self.package_dir or []), *package_folders(self.robot)],
@@ -153,16 +152,6 @@ class LogOptions:
         log = read_log(path, robot, **self.reading(sensors))
         print(log.reading, file=sys.stderr)
         return log
-
-
-def _quietly(load: Callable[..., Robot], *arguments: Any, **options: Any) -> Robot:
-    """Without the warnings in the log: they are printed in short."""
-    logger = logging.getLogger("contactsense")
-    before, logger.disabled = logger.disabled, True
-    try:
-        return load(*arguments, **options)
-    finally:
-        logger.disabled = before
 
 
 def pairs(option: str, given: Sequence[str] | None, default: str | None = None) -> dict[str, str]:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
+
+from ..robot import Robot
 
 # A warning of one link is of its mesh.
 _OF_MESH = re.compile(r"link '(.*?)': (?:mesh '(.*?)')?")
@@ -25,6 +29,16 @@ def package_folders(urdf: str) -> list[Path]:
 
 def _entries(variable: str) -> list[str]:
     return [entry for entry in os.environ.get(variable, "").split(os.pathsep) if entry]
+
+
+def quietly(load: Callable[..., Robot], *arguments: Any, **options: Any) -> Robot:
+    """Without the warnings in the log: they are printed in short."""
+    logger = logging.getLogger("contactsense")
+    before, logger.disabled = logger.disabled, True
+    try:
+        return load(*arguments, **options)
+    finally:
+        logger.disabled = before
 
 
 def summary(warnings: Sequence[str]) -> list[str]:

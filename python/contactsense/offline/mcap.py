@@ -14,14 +14,13 @@ from .._extras import require
 from ..log import Log
 from ..log.base_frames import base_frames, placed
 from ..log.joint_columns import JointColumns
-from .ros_messages import NANOSECONDS, Marker, Messages
+from .ros_messages import JOINT_STATE, MARKERS, NANOSECONDS, WRENCH, Marker, Messages
 from .whole import whole_file
 
 JOINT_STATES = "/joint_states"
 BASE = "/base"
 EXTERNAL_TORQUE = "/contactsense/external_torque"
 CONTACTS = "/contactsense/contacts"
-WRENCH = "geometry_msgs/msg/WrenchStamped"
 # Size of what is drawn: a hundred newtons are a metre, and a point is a ball of two centimetres [m].
 _METRES_PER_NEWTON = 0.01
 _BALL = 0.02
@@ -49,9 +48,9 @@ def write_mcap(
         writer.start(profile="ros2", library="contactsense")
         channels = {}
         kinds = {
-            JOINT_STATES: "sensor_msgs/msg/JointState",
-            EXTERNAL_TORQUE: "sensor_msgs/msg/JointState",
-            CONTACTS: "visualization_msgs/msg/MarkerArray",
+            JOINT_STATES: JOINT_STATE,
+            EXTERNAL_TORQUE: JOINT_STATE,
+            CONTACTS: MARKERS,
         }
         if robot.floating_base:
             kinds[BASE] = "nav_msgs/msg/Odometry"
@@ -59,9 +58,8 @@ def write_mcap(
         for topic, kind in kinds.items():
             schema = writer.register_schema(kind, "ros2msg", messages.definition(kind))
             channels[topic] = (writer.register_channel(topic, "cdr", schema), kind)
-        for number, (time, topic, message) in enumerate(_all(log, ticks, found, robot, sensors, messages)):
+        for number, (stamp, topic, message) in enumerate(_all(log, ticks, found, robot, sensors, messages)):
             channel, kind = channels[topic]
-            stamp = round(time * NANOSECONDS)
             writer.add_message(channel, stamp, messages.pack(message, kind), stamp, number)
         writer.finish()
 
@@ -73,8 +71,8 @@ def _all(
     robot: _core.Robot,
     sensors: Sequence[_core.ForceTorqueSensor],
     messages: Messages,
-) -> Iterator[tuple[float, str, Any]]:
-    """All messages in the order of time."""
+) -> Iterator[tuple[int, str, Any]]:
+    """All messages in the order of time; stamps are in nanoseconds."""
     joints = JointColumns(robot)
     names = list(joints.names)
     frames = base_frames(robot) if robot.floating_base else None
@@ -82,22 +80,19 @@ def _all(
     base_link = "" if frames is None else next(iter(frames.own), "")
     position = joints.positions(log.q)
     columns = [joints.velocities(rows) for rows in (log.v, ticks["external_torque"])]
-    effort = None if log.tau is None else joints.velocities(log.tau)
+    effort = np.zeros((len(log), 0)) if log.tau is None else joints.velocities(log.tau)
     first = np.searchsorted(found["row"], np.arange(len(ticks["time"]) + 1))
-    step = float(np.median(np.diff(log.time))) if len(log) > 1 else 0.0
+    lifetime = round(2.0 * NANOSECONDS * float(np.median(np.diff(log.time)))) if len(log) > 1 else 0
     for row, time in enumerate(ticks["time"].tolist()):
+        stamp = round(time * NANOSECONDS)
         if frames is not None:
-            yield time, BASE, messages.odometry(time, base_poses[row], log.v[row], base_link)
+            yield stamp, BASE, messages.odometry(stamp, base_poses[row], log.v[row], base_link)
         if log.wrenches is not None:
             for sensor, reading in zip(sensors, log.wrenches[row].tolist(), strict=True):
-                yield time, _topic(sensor), messages.wrench(time, _frame(sensor), reading)
-        own_effort = None if effort is None else effort[row]
-        yield (
-            time,
-            JOINT_STATES,
-            messages.joint_state(time, names, position[row], columns[0][row], own_effort),
-        )
-        yield time, EXTERNAL_TORQUE, messages.joint_state(time, names, None, None, columns[1][row])
+                yield stamp, _topic(sensor), messages.wrench(stamp, _frame(sensor), reading)
+        state = messages.joint_state(stamp, names, position[row], columns[0][row], effort[row])
+        yield stamp, JOINT_STATES, state
+        yield stamp, EXTERNAL_TORQUE, messages.joint_state(stamp, names, effort=columns[1][row])
         markers = []
         for k in range(int(first[row]), int(first[row + 1])):
             point, force = found["point"][k], found["force"][k]
@@ -105,13 +100,13 @@ def _all(
                 continue
             number = int(found["id"][k]) % (1 << 31)
             ball = (_BALL, _BALL, _BALL)
-            markers.append(messages.marker(time, number, Marker.SPHERE, [point], ball, 2.0 * step))
+            markers.append(messages.marker(stamp, number, Marker.SPHERE, [point], ball, lifetime))
             if np.all(np.isfinite(force)):
                 ends = [point - _METRES_PER_NEWTON * force, point]
                 scale = (_SHAFT, _HEAD, 0.0)
-                markers.append(messages.marker(time, number, Marker.ARROW, ends, scale, 2.0 * step))
+                markers.append(messages.marker(stamp, number, Marker.ARROW, ends, scale, lifetime))
         if markers:
-            yield time, CONTACTS, messages.markers(markers)
+            yield stamp, CONTACTS, messages.markers(markers)
 
 
 def _topic(sensor: _core.ForceTorqueSensor) -> str:
