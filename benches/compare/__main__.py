@@ -11,7 +11,7 @@ from .machine import describe, use_one_core
 
 NAMES = (
     *("observer", "compensation", "monitor", "noisy", "contact_map", "closest", "rays", "particle_filter"),
-    *("log", "view", "bridge"),
+    *("log", "view", "bridge", "c_interface"),
 )
 
 
@@ -32,6 +32,7 @@ def main() -> int:
 
     from . import (
         bridge,
+        c_interface,
         closest,
         compensation,
         contact_map,
@@ -63,6 +64,7 @@ def main() -> int:
         log,
         view,
         bridge,
+        c_interface,
     )
     modules = dict(zip(NAMES, all_modules, strict=True))
     comparisons = []
