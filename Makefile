@@ -4,7 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test lint types rust-test python-test shared-test bench docs clean toolchain install studies wheel-check header
+.PHONY: demo test lint types rust-test python-test shared-test bench docs clean toolchain install studies wheel-check licences lowest header
 
 demo: GROUP :=
 demo: install
@@ -76,13 +76,19 @@ install: $(BIN)/maturin
 	@[ -z "$(GROUP)" ] || $(BIN)/python -m pip install -q --disable-pip-version-check 'pip>=25.1'
 	@[ -z "$(GROUP)" ] || $(BIN)/python -m pip install -q --disable-pip-version-check --group $(GROUP)
 
-# The wheel, in an environment that holds nothing else: it works, and says what each missing extra is for.
-wheel-check: $(BIN)/maturin
-	rm -rf target/wheel-check
-	$(BIN)/maturin build --release --quiet --out target/wheel-check
-	$(PYTHON) -m venv target/wheel-check/venv
-	target/wheel-check/venv/bin/python -m pip install -q --disable-pip-version-check target/wheel-check/*.whl
-	target/wheel-check/venv/bin/python -I tools/check_wheel.py
+# The wheel as it is released, in bare environments of each Python that is there.
+wheel-check: toolchain
+	$(PYTHON) -m venv target/wheel-tools
+	target/wheel-tools/bin/python -m pip install -q --disable-pip-version-check 'pip>=25.1'
+	target/wheel-tools/bin/python -m pip install -q --disable-pip-version-check --group wheels
+	target/wheel-tools/bin/python tools/wheels.py
+
+# Licences of all that is shipped and needed, and the lowest versions of dependencies that are allowed.
+licences: install
+	$(BIN)/python tools/licences.py
+
+lowest: toolchain
+	$(PYTHON) tools/lowest.py
 
 clean:
 	rm -rf $(VENV) target
