@@ -15,6 +15,8 @@ __all__ = [
     "Candidate",
     "ClosestPoints",
     "Contact",
+    "ContactClass",
+    "ContactClassifier",
     "ContactEstimate",
     "ContactIsolator",
     "ContactMap",
@@ -40,6 +42,7 @@ __all__ = [
     "Payload",
     "PayloadProposal",
     "RayHits",
+    "Reaction",
     "Robot",
     "Surface",
     "SurfaceSamples",
@@ -2261,6 +2264,72 @@ class Mode:
     @property
     def spread(self) -> float:
         """Root of the mean squared distance of the mode's particles from their mean [m]."""
+
+@final
+class ContactClassifier:
+    def __new__(
+        cls,
+        robot: Robot,
+        *,
+        dt: float,
+        prior: ArrayLike | None = None,
+        intended_prior: float = 0.28,
+    ) -> Self: ...
+    @property
+    def robot(self) -> Robot: ...
+    def update(self, q: ArrayLike, v: ArrayLike, report: ContactReport) -> tuple[ContactClass, ...]: ...
+    def reset(self) -> None: ...
+
+@final
+class ContactClass:
+    @property
+    def id(self) -> int | None: ...
+    @property
+    def running(self) -> bool: ...
+    @property
+    def since(self) -> float: ...
+    @property
+    def duration(self) -> float: ...
+    @property
+    def clamped(self) -> float: ...
+    @property
+    def transient(self) -> float: ...
+    @property
+    def sustained(self) -> float: ...
+    @property
+    def intended(self) -> float: ...
+    @property
+    def features(self) -> dict[str, float]: ...
+    @property
+    def contributions(self) -> dict[str, dict[str, float]]: ...
+    @property
+    def _scaled(self) -> list[float]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+
+@final
+class Reaction:
+    def __new__(
+        cls,
+        robot: Robot,
+        *,
+        dt: float,
+        velocity_limit: ArrayLike | None = None,
+        acceleration_limit: ArrayLike | None = None,
+        torque_limit: ArrayLike | None = None,
+        distance: float = 0.1,
+        duration: float = 1.0,
+    ) -> Self: ...
+    @property
+    def robot(self) -> Robot: ...
+    def stop(self, v: ArrayLike) -> NDArray[np.float64]: ...
+    def retract(
+        self, v: ArrayLike, collision_torque: ArrayLike, *, admittance: float = 0.02
+    ) -> NDArray[np.float64]: ...
+    def gravity_compensation(
+        self, q: ArrayLike, v: ArrayLike, *, damping: float = 1.0
+    ) -> NDArray[np.float64]: ...
+    def reset(self) -> None: ...
 
 @final
 class ContactMap:
