@@ -90,10 +90,7 @@ def simulate(robot: Robot, true: Robot, rated: np.ndarray, scene: Scene) -> Epis
         low, part = int(row), row % 1.0
         goal = (1.0 - part) * path.q[low] + part * path.q[low + 1]
         rate = clock.rate * path.v[low]
-        if clock.soft(now):
-            tau = soft.torque(q, v, q)
-        else:
-            tau = control.torque(q, v, goal, rate)
+        tau = soft.torque(q, v, q) if clock.soft(now) else control.torque(q, v, goal, rate)
         measured = arm.step(np.clip(tau, -3.0 * rated, 3.0 * rated))
         speed = -float(force @ velocity) / size if size > 0.0 else 0.0
         rows.append((now, q, v, measured.tau_mean, external, size, speed, clock.retracts))

@@ -13,7 +13,7 @@ from .study import run
 
 # Other scenes than those of any study with a small seed.
 SEED, SCENES = 100, 195
-# Penalty on the square of each weight but the constants: it keeps answers from more confidence than the scenes give.
+# Penalty on the square of each weight but the constants, against more confidence than the scenes give.
 RIDGE = 0.003
 # Until this age [s], a contact has the weights of young ones; as in the core.
 YOUNG = 0.15
@@ -50,7 +50,9 @@ def weights_of(judged: Sequence[Judged]) -> dict[str, np.ndarray]:
     """(4, n + 1) by age: clamped, transient, sustained, intended."""
     found = {}
     for name in ("OF_YOUNG", "OF_LASTING", "OF_ENDED"):
-        rows = [(answer, each.truth) for each in judged for answer in each.answers if _stage(answer.age) == name]
+        rows = [
+            (answer, each.truth) for each in judged for answer in each.answers if _stage(answer.age) == name
+        ]
         features = np.array([answer.scaled for answer, _ in rows])
         kinds = fit(features, np.array([KINDS.index(truth.kind) for _, truth in rows]), 3)
         intended = fit(features, np.array([int(truth.intended) for _, truth in rows]), 2)

@@ -19,7 +19,7 @@ EARLY, LATE = 0.005, 0.05
 
 @dataclass(frozen=True)
 class Answer:
-    """The probabilities of one contact at an age (None: its end), and the features as the weights take them."""
+    """Probabilities of one contact at an age (None: its end), and the features as the weights take them."""
 
     age: float | None
     kinds: tuple[float, float, float]

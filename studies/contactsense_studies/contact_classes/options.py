@@ -21,7 +21,7 @@ class Options:
         tuple[str, ...],
         Option(
             "--arm",
-            help=f"One of {', '.join(ARMS)}; may be repeated (default: those that the weights were not found on).",
+            help=f"One of {', '.join(ARMS)}; may be repeated (default: those without weights of their own).",
         ),
     ] = ()
     scenes: Annotated[int, Option(help="Number of scenes per arm.")] = 130

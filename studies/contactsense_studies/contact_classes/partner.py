@@ -1,4 +1,4 @@
-"""What a robot touches, along one line: a thing that is free, held by springs or by a wall, or a person's hand."""
+"""What a robot touches, along one line: a thing that is free or held, or the hand of a person."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Thing:
     _touched: float = field(default=0.0, init=False)
 
     def force(self, place: float, speed: float, dt: float) -> float:
-        """Force on the robot against the line [N], of its point `place` past the first touch [m], and moves on.
+        """Moves on; returns the force on the robot against the line [N], `place` past the first touch [m].
 
         The point is taken where it will be at the end of the step, which keeps stiff contacts stable.
         """
@@ -92,7 +92,11 @@ class Hand:
         if edge <= 0.0:
             return 0.0
         smooth = edge**3 * (10.0 + edge * (-15.0 + 6.0 * edge))
-        return self.peak * smooth * (1.0 + self.unrest * float(np.sin(2 * np.pi * self.rate * time + self.phase)))
+        return (
+            self.peak
+            * smooth
+            * (1.0 + self.unrest * float(np.sin(2 * np.pi * self.rate * time + self.phase)))
+        )
 
 
 @dataclass(frozen=True)

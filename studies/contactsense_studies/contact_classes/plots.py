@@ -19,7 +19,9 @@ _BLUE, _ORANGE = "#0072B2", "#E69F00"
 
 def draw(figure: Figure, study: Study) -> None:
     """Confusion, reliability, and the probabilities themselves."""
-    figure.suptitle("Contacts told apart on arms that the weights were not found on", x=0.01, ha="left", weight="bold")
+    figure.suptitle(
+        "Contacts told apart on arms that the weights were not found on", x=0.01, ha="left", weight="bold"
+    )
     axes: Any = figure.subplots(1, 3)
     found = score(study.judged)
     _confusion(axes[0], np.array(found.confusion))
@@ -40,7 +42,9 @@ def draw(figure: Figure, study: Study) -> None:
 def _confusion(axes: Any, counts: np.ndarray) -> None:
     axes.imshow(counts / np.maximum(counts.sum(axis=1, keepdims=True), 1), cmap="Blues", vmin=0.0, vmax=1.0)
     for (row, column), count in np.ndenumerate(counts):
-        axes.text(column, row, str(count), ha="center", va="center", color="black" if row != column else "white")
+        axes.text(
+            column, row, str(count), ha="center", va="center", color="black" if row != column else "white"
+        )
     axes.set_xticks(range(3), KINDS)
     axes.set_yticks(range(3), KINDS)
     axes.set(xlabel="said", ylabel="true", title="Kind")

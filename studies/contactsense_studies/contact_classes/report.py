@@ -14,7 +14,7 @@ from .study import Study
 NOTES = (
     f"The answer that counts is that of the contact's end, or at {VERDICT:g} s if it lasts longer.",
     f"The weights were found on {' and '.join(FITTED)}, on scenes of other seeds.",
-    "clamped or transient: contacts that are either, and the share in which the likelier of the two is right.",
+    "clamped or transient: contacts that are either, and the share in which the likelier of the two is it.",
     "missed: not detected; open: the scene ends before there is an answer.",
     "error: expected calibration error of the probability, over ten bins.",
 )

@@ -136,7 +136,9 @@ def _by_person(way: Way, rng: np.random.Generator, kind: str) -> Scene:
 
 def _thing(rng: np.random.Generator, kind: str) -> Thing:
     if kind == "free":
-        return Thing(_log(rng, 0.5, 20.0), _log(rng, 3e3, 6e4), rng.uniform(0.1, 1.0), damper=_log(rng, 0.1, 5.0))
+        return Thing(
+            _log(rng, 0.5, 20.0), _log(rng, 3e3, 6e4), rng.uniform(0.1, 1.0), damper=_log(rng, 0.1, 5.0)
+        )
     if kind == "arm":
         return Thing(
             rng.uniform(1.0, 5.0),
@@ -160,7 +162,13 @@ def _thing(rng: np.random.Generator, kind: str) -> Thing:
         )
     if kind == "soft":
         return Thing(np.inf, _log(rng, 4e2, 4e3), rng.uniform(0.5, 2.0))
-    return Thing(rng.uniform(30.0, 80.0), _log(rng, 2e3, 2e4), 1.0, spring=_log(rng, 50.0, 800.0), damper=rng.uniform(80.0, 300.0))
+    return Thing(
+        rng.uniform(30.0, 80.0),
+        _log(rng, 2e3, 2e4),
+        1.0,
+        spring=_log(rng, 50.0, 800.0),
+        damper=rng.uniform(80.0, 300.0),
+    )
 
 
 def _scene(
@@ -205,9 +213,7 @@ def _row(way: Way, rng: np.random.Generator) -> int:
     return int(rng.integers(round(BEFORE / DT) + 1, len(way.motion) - round(AFTER / DT) - 2))
 
 
-def _place(
-    way: Way, rng: np.random.Generator, row: int
-) -> tuple[str, np.ndarray, np.ndarray, np.ndarray]:
+def _place(way: Way, rng: np.random.Generator, row: int) -> tuple[str, np.ndarray, np.ndarray, np.ndarray]:
     """A link, and its point [m], outward normal and velocity [m/s], world frame."""
     link = str(rng.choice(list(way.samples)))
     points, normals = way.samples[link]

@@ -46,7 +46,8 @@ class Study:
 def run(options: Options | None = None, *, processes: int | None = None, progress: Report = silent) -> Study:
     """Runs the study; `progress` is told the stage, and how much of it is done.
 
-    The answer depends on the options alone. Arms that are not installed are skipped, unless `options` names them.
+    The answer depends on the options alone. Arms that are not installed are skipped, unless `options` names
+    them.
 
     Raises:
         MissingExtraError: an arm that `options` names is not installed.
@@ -84,7 +85,7 @@ def _trial(item: Item) -> list[Judged]:
 def contacts_of(
     name: str, robot: Robot, rng: np.random.Generator, scenes: int, motion_seconds: float = MOTION_SECONDS
 ) -> list[Judged]:
-    """Scenes of one arm with errors of its own; those in which nothing touches, or that become unstable, are left out."""
+    """Scenes of one arm with errors of its own, less those without contact or unstable."""
     seed = int(rng.integers(1 << 30))
     arm = ImperfectArm.typical(robot, seed)
     true, rated = arm.true_robot(robot), rated_torque(robot)
