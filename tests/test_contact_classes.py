@@ -79,7 +79,7 @@ def test_contributions_and_constants_are_the_logits() -> None:
     odds = np.log(other.intended / (1.0 - other.intended)) - np.log(
         contact.intended / (1.0 - contact.intended)
     )
-    np.testing.assert_allclose(odds, -np.log(0.28 / 0.72), atol=1e-9)
+    np.testing.assert_allclose(odds, -np.log(0.26 / 0.74), atol=1e-9)
     assert other.sustained > contact.sustained
 
 

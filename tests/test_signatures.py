@@ -83,7 +83,7 @@ SIGNATURES = {
     "torque_threshold=0.2, noise=None, calibration=None",
     "ContactParticleFilter.update": "q, tau_ext, *, time=None",
     "ContactParticleFilter.reset": "",
-    "ContactClassifier": "robot, *, dt, prior=None, intended_prior=0.28",
+    "ContactClassifier": "robot, *, dt, prior=None, intended_prior=0.26",
     "ContactClassifier.update": "q, v, report",
     "ContactClassifier.reset": "",
     "ContactClass.to_dict": "",

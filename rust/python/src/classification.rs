@@ -68,7 +68,7 @@ impl PyContactClassifier {
 impl PyContactClassifier {
     #[new]
     #[pyo3(signature = (robot, *, dt, prior=None, intended_prior=None),
-        text_signature = "(robot, *, dt, prior=None, intended_prior=0.28)")]
+        text_signature = "(robot, *, dt, prior=None, intended_prior=0.26)")]
     fn new(
         #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
         dt: Number<'_, '_>,
