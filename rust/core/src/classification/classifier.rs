@@ -3,14 +3,16 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::features::{Features, FEATURES};
+use super::class::ContactClass;
 use super::followed::{Followed, Instant, ONSET};
-use super::weights::{Weights, INTENDED, OF_ENDED, OF_LASTING, OF_YOUNG, SHARES, YOUNG};
+use super::levers::levers;
+use super::logits::judge;
+use super::prior::{prior, ClassifierOptions};
 use crate::error::{Error, Result};
 use crate::isolation::Contact;
 use crate::monitor::ContactReport;
 use crate::robot::jacobian::for_each_column;
-use crate::robot::{JointKind, Kinematics, Robot};
+use crate::robot::{Kinematics, Robot};
 use crate::sample::check_time_step;
 use crate::spatial::vector::split;
 
@@ -18,92 +20,8 @@ use crate::spatial::vector::split;
 const MOST: usize = 8;
 /// A contact that is not reported for so long has ended; a robot that bounces is back by then (s).
 const ENDED: f64 = 0.1;
-/// Added to the way from a joint to the last one behind it: the length of a hand (m).
-const HAND: f64 = 0.1;
 /// Instants that are kept from before an onset, at most.
 const MOST_INSTANTS: usize = 1000;
-/// Shares of a prior are kept from 0 and 1 by this.
-const LEAST_SHARE: f64 = 1e-3;
-
-/// What is assumed of contacts before anything is measured of them.
-///
-/// ```
-/// use contactsense::classification::ClassifierOptions;
-///
-/// let options = ClassifierOptions::default();
-/// assert!((options.clamped + options.transient + options.sustained - 1.0).abs() < 1e-9);
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ClassifierOptions {
-    /// Time between two calls (s).
-    pub dt: f64,
-    /// Shares of contacts that are clamped, transient and sustained.
-    pub clamped: f64,
-    /// See `clamped`.
-    pub transient: f64,
-    /// See `clamped`.
-    pub sustained: f64,
-    /// Share of contacts that are intended.
-    pub intended: f64,
-}
-
-impl Default for ClassifierOptions {
-    fn default() -> Self {
-        let [clamped, transient, sustained] = SHARES;
-        Self { dt: 1e-3, clamped, transient, sustained, intended: INTENDED }
-    }
-}
-
-/// What one contact is.
-///
-/// ```
-/// use contactsense::classification::ContactClass;
-///
-/// let unknown = ContactClass::default();
-/// assert!(unknown.running && unknown.id.is_none());
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct ContactClass {
-    /// Of [`Track`](crate::isolation::Track); none where the contact is not followed.
-    pub id: Option<u64>,
-    /// False in the one tick that says that it has ended.
-    pub running: bool,
-    /// Time of its first tick, as the report's (s).
-    pub since: f64,
-    /// From its first tick to its last so far (s).
-    pub duration: f64,
-    /// Probability that it is held between the robot and something fixed.
-    pub clamped: f64,
-    /// Probability that it ends by itself shortly.
-    pub transient: f64,
-    /// Probability that it lasts with something that follows or yields.
-    pub sustained: f64,
-    /// Probability that it is intended.
-    pub intended: f64,
-    /// What was measured of it.
-    pub features: Features,
-    /// What each feature adds to the logits of clamped, transient, sustained and intended.
-    pub contributions: [[f64; FEATURES]; 4],
-}
-
-impl Default for ContactClass {
-    fn default() -> Self {
-        let [clamped, transient, sustained] = SHARES;
-        Self {
-            id: None,
-            running: true,
-            since: 0.0,
-            duration: 0.0,
-            clamped,
-            transient,
-            sustained,
-            intended: INTENDED,
-            features: Features::default(),
-            contributions: [[0.0; FEATURES]; 4],
-        }
-    }
-}
 
 /// Says of each contact that a monitor reports whether it is clamped, transient or sustained, and whether it is intended.
 /// It is no safety function.
@@ -325,91 +243,4 @@ impl ContactClassifier {
             }
         }
     }
-}
-
-fn judge(contact: &Followed, running: bool, prior: &[f64; 4]) -> ContactClass {
-    let features = contact.features();
-    let duration = contact.last - contact.since;
-    let weights = if !running {
-        &OF_ENDED
-    } else if duration < YOUNG {
-        &OF_YOUNG
-    } else {
-        &OF_LASTING
-    };
-    let (logits, contributions) = explain(weights, &features, prior);
-    let largest = logits[0].max(logits[1]).max(logits[2]);
-    let [clamped, transient, sustained] = [0, 1, 2].map(|kind: usize| (logits[kind] - largest).exp());
-    let sum = clamped + transient + sustained;
-    ContactClass {
-        id: contact.id,
-        running,
-        since: contact.since,
-        duration,
-        clamped: clamped / sum,
-        transient: transient / sum,
-        sustained: sustained / sum,
-        intended: 1.0 / (1.0 + (-logits[3]).exp()),
-        features,
-        contributions,
-    }
-}
-
-fn explain(weights: &Weights, features: &Features, prior: &[f64; 4]) -> ([f64; 4], [[f64; FEATURES]; 4]) {
-    let scaled = features.scaled();
-    let mut logits = *prior;
-    let mut contributions = [[0.0; FEATURES]; 4];
-    for ((row, logit), parts) in weights.iter().zip(&mut logits).zip(&mut contributions) {
-        *logit += row[FEATURES];
-        for ((weight, feature), part) in row.iter().zip(&scaled).zip(parts) {
-            *part = weight * feature;
-            *logit += *part;
-        }
-    }
-    (logits, contributions)
-}
-
-/// What another prior than that of the weights adds to the logits.
-fn prior(options: &ClassifierOptions) -> Result<[f64; 4]> {
-    let shares = [options.clamped, options.transient, options.sustained];
-    let is_share = |share: &f64| (0.0..=1.0).contains(share);
-    if !shares.iter().all(is_share) || (shares.iter().sum::<f64>() - 1.0).abs() > 1e-6 {
-        return Err(Error::input(
-            "prior",
-            format!(
-                "must be shares of clamped, transient and sustained contacts that sum to 1, got {shares:?}"
-            ),
-        ));
-    }
-    if !is_share(&options.intended) {
-        return Err(Error::input(
-            "intended_prior",
-            format!("must be a share from 0 to 1, got {}", options.intended),
-        ));
-    }
-    let inside = |share: f64| share.clamp(LEAST_SHARE, 1.0 - LEAST_SHARE);
-    let odds = |share: f64| (inside(share) / (1.0 - inside(share))).ln();
-    let of = |kind: usize| (inside(shares[kind]) / SHARES[kind]).ln();
-    Ok([of(0), of(1), of(2), odds(options.intended) - odds(INTENDED)])
-}
-
-/// How far the parts behind each joint reach.
-fn levers(robot: &Robot) -> Vec<f64> {
-    let count = robot.body_count();
-    let mut reach = vec![0.0_f64; count];
-    for body in (1..count).rev() {
-        let parent = robot.bodies[body].parent;
-        reach[parent] = reach[parent].max(robot.bodies[body].placement.translation.norm() + reach[body]);
-    }
-    let mut levers = vec![1.0; robot.nv()];
-    for body in 1..count {
-        let range = robot.velocity_range(body);
-        let turning = match robot.bodies[body].kind {
-            JointKind::FreeFlyer => range.start + 3..range.end,
-            JointKind::Prismatic => range.end..range.end,
-            JointKind::Revolute | JointKind::Continuous => range,
-        };
-        levers[turning].fill(reach[body] + HAND);
-    }
-    levers
 }
