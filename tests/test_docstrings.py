@@ -10,9 +10,10 @@ import contactsense as cs
 
 CLASSES = [getattr(cs, name) for name in cs.__all__ if inspect.isclass(getattr(cs, name))]
 IDS = [cls.__name__ for cls in CLASSES]
-# Arrays without a unit: directions, numbers of rows, ranks, answers and logarithms of probabilities.
+# Arrays without a unit: directions, numbers of rows, ranks, answers, shares and logarithms of probabilities.
 UNITLESS = {
     "hysteresis_std",
+    "prior",
     "normal",
     "normals",
     "triangles",

@@ -83,6 +83,16 @@ SIGNATURES = {
     "torque_threshold=0.2, noise=None, calibration=None",
     "ContactParticleFilter.update": "q, tau_ext, *, time=None",
     "ContactParticleFilter.reset": "",
+    "ContactClassifier": "robot, *, dt, prior=None, intended_prior=0.26",
+    "ContactClassifier.update": "q, v, report",
+    "ContactClassifier.reset": "",
+    "ContactClass.to_dict": "",
+    "Reaction": "robot, *, dt, velocity_limit=None, acceleration_limit=None, torque_limit=None, "
+    "distance=0.1, duration=1.0",
+    "Reaction.stop": "v",
+    "Reaction.retract": "v, collision_torque, *, admittance=0.02",
+    "Reaction.gravity_compensation": "q, v, *, damping=1.0",
+    "Reaction.reset": "",
     "ContactMap": "robot, *, samples=5_000, friction=0.5, noise=None, links=None, pull_probability=0.05, "
     "calibration=None",
     "ContactMap.evaluate": "q, tau_ext",

@@ -15,6 +15,8 @@ __all__ = [
     "Candidate",
     "ClosestPoints",
     "Contact",
+    "ContactClass",
+    "ContactClassifier",
     "ContactEstimate",
     "ContactIsolator",
     "ContactMap",
@@ -40,6 +42,7 @@ __all__ = [
     "Payload",
     "PayloadProposal",
     "RayHits",
+    "Reaction",
     "Robot",
     "Surface",
     "SurfaceSamples",
@@ -2265,6 +2268,217 @@ class Mode:
     @property
     def spread(self) -> float:
         """Root of the mean squared distance of the mode's particles from their mean [m]."""
+
+@final
+class ContactClassifier:
+    """Says of each contact that a monitor reports whether it is clamped, transient or sustained, and whether it is intended.
+
+    The probabilities follow from a few features of force and motion by logistic regression, whose weights were found on
+    simulated scenes. It is not a safety function. One thread at a time may use it.
+
+    Args:
+        robot: The robot.
+        dt: Time between two calls [s]: from how long before a contact velocities are kept. Times are those of the reports.
+        prior: Shares of contacts that are clamped, transient and sustained, `(3,)`; None for those of the simulated scenes.
+        intended_prior: Share of contacts that are intended.
+
+    Raises:
+        InputError: Names the argument.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> monitor, classifier = cs.ContactMonitor(robot, dt=1e-3), cs.ContactClassifier(robot, dt=1e-3)
+        >>> q, still = np.full(7, 0.4), np.zeros(7)
+        >>> weight = robot.inverse_dynamics(q, still, still)
+        >>> for push in np.minimum(np.arange(600) / 300, 1.0) * 5.0:
+        ...     contacts = classifier.update(q, still, monitor.update(q, still, weight - push))
+        >>> contacts[0].running, contacts[0].intended > 0.5
+        (True, True)
+    """
+
+    def __new__(
+        cls,
+        robot: Robot,
+        *,
+        dt: float,
+        prior: ArrayLike | None = None,
+        intended_prior: float = 0.26,
+    ) -> Self: ...
+    @property
+    def robot(self) -> Robot:
+        """The robot."""
+    def update(self, q: ArrayLike, v: ArrayLike, report: ContactReport) -> tuple[ContactClass, ...]:
+        """Takes in one tick.
+
+        Args:
+            q: Configuration, `(nq,)`, as the monitor got it.
+            v: Velocity, `(nv,)` [rad/s; m/s for sliding joints], as the monitor got it.
+            report: What the monitor said of this tick.
+
+        Returns:
+            The contacts that run, and those that have ended: once each, 0.1 s after their last tick.
+
+        Raises:
+            InputError: Names the argument; the state is then unchanged.
+        """
+    def reset(self) -> None:
+        """Forgets all contacts."""
+
+@final
+class ContactClass:
+    """What one contact is.
+
+    Frozen; can be pickled and copied. `clamped`, `transient` and `sustained` sum to one.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> monitor, classifier = cs.ContactMonitor(robot, dt=1e-3), cs.ContactClassifier(robot, dt=1e-3)
+        >>> q, still = np.full(7, 0.4), np.zeros(7)
+        >>> tau = robot.inverse_dynamics(q, still, still)
+        >>> for _ in range(50):
+        ...     contacts = classifier.update(q, still, monitor.update(q, still, tau))
+        ...     tau = tau - 0.1
+        >>> contacts[0].running, sorted(contacts[0].features)[:2]
+        (True, ['advance', 'approach_speed'])
+    """
+
+    @property
+    def id(self) -> int | None:
+        """Number of the contact, as `Contact.id`; None where contacts are not followed."""
+    @property
+    def running(self) -> bool:
+        """Whether the contact goes on; False once, when it has ended."""
+    @property
+    def since(self) -> float:
+        """Time of its first tick, as `ContactReport.time` [s]."""
+    @property
+    def duration(self) -> float:
+        """From its first tick to its last so far [s]."""
+    @property
+    def clamped(self) -> float:
+        """Probability that it is held between the robot and something fixed."""
+    @property
+    def transient(self) -> float:
+        """Probability that it ends by itself shortly."""
+    @property
+    def sustained(self) -> float:
+        """Probability that it lasts with something that follows or yields."""
+    @property
+    def intended(self) -> float:
+        """Probability that it is intended."""
+    @property
+    def features(self) -> dict[str, float]:
+        """What was measured of it, by name; a new dict at every access.
+
+        `rise_time` [s], `width` [s], `remaining`, `approach_speed` [m/s], `onset_work`, `advance` [m], `retreat` [m],
+        `net_work` [m] and `peak` [N]; forces and ways are equivalents of torques and their power.
+        """
+    @property
+    def contributions(self) -> dict[str, dict[str, float]]:
+        """What each feature adds to each logit: a dict by "clamped", "transient", "sustained" and "intended" of dicts by feature."""
+    @property
+    def _scaled(self) -> list[float]:
+        """The features as the weights take them, in the order of `contributions`."""
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers and dicts.
+        """
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+
+@final
+class Reaction:
+    """Reactions to a contact: stop, retreat and gravity compensation, within limits.
+
+    Each call is one control tick and returns the next command. Whatever the finite arguments, velocities, accelerations and
+    torques of the commands stay within the limits. It is not a safety function. One thread at a time may use it.
+
+    Args:
+        robot: The robot.
+        dt: Time between two calls [s].
+        velocity_limit: Scalar or `(nv,)` [rad/s; m/s for sliding joints]; None for a quarter of the robot's limits.
+        acceleration_limit: Scalar or `(nv,)` [rad/s^2; m/s^2]; None for what reaches the velocity limit in 0.25 s.
+        torque_limit: Scalar or `(nv,)` [Nm; N]; None for the efforts of the robot's description.
+        distance: Of a retreat: the most that a joint moves after it has come to rest [rad; m].
+        duration: Of a retreat: when the robot comes to rest [s].
+
+    Raises:
+        InputError: Names the argument.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> reaction = cs.Reaction(cs.Robot.named("iiwa14"), dt=1e-3, acceleration_limit=2.0)
+        >>> for _ in range(100):
+        ...     command = reaction.stop(np.full(7, 0.2))
+        >>> bool(abs(command).max() < 1e-9)
+        True
+    """
+
+    def __new__(
+        cls,
+        robot: Robot,
+        *,
+        dt: float,
+        velocity_limit: ArrayLike | None = None,
+        acceleration_limit: ArrayLike | None = None,
+        torque_limit: ArrayLike | None = None,
+        distance: float = 0.1,
+        duration: float = 1.0,
+    ) -> Self: ...
+    @property
+    def robot(self) -> Robot:
+        """The robot."""
+    def stop(self, v: ArrayLike) -> NDArray[np.float64]:
+        """The next velocity of a stop in the direction of the motion.
+
+        Args:
+            v: Velocity, `(nv,)` [rad/s; m/s for sliding joints]; of the first call, what is braked from.
+
+        Returns:
+            Commanded velocity, `(nv,)` [rad/s; m/s]; read-only.
+
+        Raises:
+            InputError: Names the argument; the state is then unchanged.
+        """
+    def retract(
+        self, v: ArrayLike, collision_torque: ArrayLike, *, admittance: float = 0.02
+    ) -> NDArray[np.float64]:
+        """The next velocity of a retreat along which the torque of the collision falls.
+
+        Each joint comes to rest and then moves by `admittance` times its torque, until `distance` or `duration` is used up.
+
+        Args:
+            v: Velocity, `(nv,)` [rad/s; m/s for sliding joints]; of the first call, what is braked from.
+            collision_torque: `ContactReport.collision_torque`, `(nv,)` [Nm; N].
+            admittance: Velocity over torque [rad/s/Nm; m/s/N].
+
+        Returns:
+            Commanded velocity, `(nv,)` [rad/s; m/s]; read-only.
+
+        Raises:
+            InputError: Names the argument; the state is then unchanged.
+        """
+    def gravity_compensation(
+        self, q: ArrayLike, v: ArrayLike, *, damping: float = 1.0
+    ) -> NDArray[np.float64]:
+        """The torque that carries the robot's weight and damps its motion, clipped to the torque limits.
+
+        Args:
+            q: Configuration, `(nq,)`.
+            v: Velocity, `(nv,)` [rad/s; m/s for sliding joints].
+            damping: [Nm s/rad; N s/m].
+
+        Returns:
+            Motor torque, `(nv,)` [Nm; N]; read-only.
+
+        Raises:
+            InputError: Names the argument.
+        """
+    def reset(self) -> None:
+        """The next call begins a new reaction."""
 
 @final
 class ContactMap:

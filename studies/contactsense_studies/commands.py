@@ -12,6 +12,7 @@ from contactsense._extras import require
 from contactsense._pictures import picture_file
 
 from .bimbo2019.options import Options as BimboOptions
+from .contact_classes.options import Options as ContactClassesOptions
 from .example_robots import robot_of
 from .harness import AsJson, add_study, print_json
 from .identifiability.options import Options as IdentifiabilityOptions
@@ -108,4 +109,10 @@ add_study(
     "identifiability",
     "How exactly the point of a contact is known from joint torques, over the surfaces of robots.",
     IdentifiabilityOptions,
+)
+add_study(
+    app,
+    "contact_classes",
+    "Contacts of simulated arms told apart: clamped, transient or sustained; intended or accidental.",
+    ContactClassesOptions,
 )

@@ -9,6 +9,7 @@
 struct Readme;
 
 pub mod calibration;
+pub mod classification;
 mod detection;
 pub mod diagnosis;
 pub mod error;
@@ -20,6 +21,7 @@ pub mod monitor;
 pub mod observer;
 pub mod particle;
 mod posterior;
+pub mod reaction;
 pub mod robot;
 mod sample;
 pub mod sensor;

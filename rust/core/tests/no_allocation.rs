@@ -6,11 +6,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Mutex;
 
 use contactsense::calibration::Calibration;
+use contactsense::classification::{ClassifierOptions, ContactClassifier};
 use contactsense::isolation::{ContactIsolator, IsolatorOptions};
 use contactsense::map::{ContactMap, MapOptions};
 use contactsense::monitor::{ContactMonitor, MonitorOptions};
 use contactsense::observer::MomentumObserver;
 use contactsense::particle::{ContactParticleFilter, FilterOptions};
+use contactsense::reaction::{Reaction, ReactionLimits};
 use contactsense::robot::Robot;
 use contactsense::sensor::{ForceTorqueSensor, LoadCompensator};
 use contactsense::{ExternalSample, Sample};
@@ -249,6 +251,34 @@ fn a_tick_allocates_nothing() {
         let report = monitor.report();
         assert_eq!((report.sensors_left_out.len(), report.wrenches.len()), (1, readings.len()));
     }
+}
+
+#[test]
+fn classes_and_reactions_allocate_nothing() {
+    let _alone = ALONE.lock().expect("the other test has not failed");
+    let robot = std::sync::Arc::new(Robot::example_arm());
+    let (q, v) = ([0.3, 0.8, -0.4, 0.9, 0.5, 0.7, 0.1], [0.05; 7]);
+    let still = [0.0; 7];
+    let weight = robot.inverse_dynamics(&q, &still, &still).expect("valid input");
+    let mut monitor = ContactMonitor::new(robot.clone(), &MonitorOptions::new(1e-3)).expect("valid options");
+    let mut classifier =
+        ContactClassifier::new(robot.clone(), &ClassifierOptions::default()).expect("valid options");
+    let limits = ReactionLimits::of(&robot);
+    let mut reaction = Reaction::new(robot, 1e-3, limits).expect("valid limits");
+    let (mut seen, mut counted) = (0, 0);
+    for tick in 0..600 {
+        let push = if tick % 250 > 80 { 6.0 } else { 0.0 };
+        let tau: Vec<f64> = weight.iter().map(|tau| tau - push).collect();
+        let report = monitor.update(&Sample::new(&q, &still, &tau)).expect("valid input").clone();
+        let before = ALLOCATIONS.load(Ordering::Relaxed);
+        seen += classifier.update(&q, &v, &report).expect("valid input").len();
+        black_box(reaction.retract(&v, &report.collision_torque, 0.02).expect("valid input"));
+        black_box(reaction.gravity_compensation(&q, &v, 1.0).expect("valid input"));
+        // The test harness has threads of its own, which allocate now and then.
+        counted += usize::from(ALLOCATIONS.load(Ordering::Relaxed) > before);
+    }
+    assert!(seen > 200, "contacts were followed: {seen}");
+    assert!(counted <= 5, "{counted} of 600 ticks");
 }
 
 #[test]

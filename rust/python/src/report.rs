@@ -63,6 +63,10 @@ impl PyContactReport {
         Self { names, report, acceleration, arrays: Arrays::default(), contacts: Once::default() }
     }
 
+    pub fn report(&self) -> &ContactReport {
+        &self.report
+    }
+
     pub fn from_content((names, report, acceleration): (Names, ContactReport, Vec<f64>)) -> Self {
         Self::new(Arc::new(names), report, acceleration)
     }

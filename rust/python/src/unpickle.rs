@@ -7,6 +7,7 @@ use serde::de::DeserializeOwned;
 use crate::calibration::PyCalibration;
 use crate::calibration_parts::{PyBodyInertia, PyJointFriction, PyPayload};
 use crate::candidate::PyCandidate;
+use crate::classification::PyContactClass;
 use crate::contact::PyContact;
 use crate::contact_map::PyMapEstimate;
 use crate::diagnosis::PyFinding;
@@ -42,6 +43,7 @@ pub fn _restore<'py>(
         "Candidate" => made(py, PyCandidate::from_content(read(content)?)),
         "Contact" => made(py, PyContact::from_content(read(content)?)),
         "Isolation" => made(py, PyIsolation::from_content(read(content)?)),
+        "ContactClass" => made(py, PyContactClass(read(content)?)),
         "ContactReport" => made(py, PyContactReport::from_content(read(content)?)),
         "ContactEstimate" => made(py, PyContactEstimate::from_content(read(content)?)),
         "MapEstimate" => Ok(Py::new(py, PyMapEstimate::with_base(read(content)?))?.into_any()),
