@@ -1,7 +1,7 @@
 """What the wheel is made of and needs, with licences: `python tools/licences.py [--sbom FILE]`.
 
-Refuses a licence that may not be shipped with MIT or Apache-2.0. Crates are those that the wheel holds, packages of
-Python those that `pip install contactsense` brings.
+Refuses a licence that may not be shipped with MIT or Apache-2.0. Crates are those that the wheel holds,
+packages of Python those that `pip install contactsense` brings.
 """
 
 from __future__ import annotations

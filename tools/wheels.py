@@ -1,8 +1,8 @@
 """Builds the wheel and checks it: `python tools/wheels.py [--out FOLDER]`.
 
-The wheel is that of manylinux2014 where Zig is there to link it (`pip install ziglang`). Checked are its size,
-that it needs only what manylinux allows (auditwheel) and only the stable interface of Python (abi3audit), and that
-it works in bare environments of each Python from 3.10 on that is found.
+The wheel is that of manylinux2014 where Zig is there to link it (`pip install ziglang`). Checked are its
+size, that it needs only what manylinux allows (auditwheel) and only the stable interface of Python
+(abi3audit), and that it works in bare environments of each Python from 3.10 on that is found.
 """
 
 from __future__ import annotations
