@@ -96,6 +96,7 @@ LAYERS = {
 }
 ABOVE = (
     "test_cli",
+    "test_contact_classes_study",
     "test_demo",
     "test_bimbo2019",
     "test_franka_touch",

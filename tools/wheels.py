@@ -29,8 +29,9 @@ def main() -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--out", type=Path, default=ROOT / "target" / "wheels", help="where the wheel goes")
-    out = parser.parse_args().out
-    wheel = build(out)
+    parser.add_argument("--wheel", type=Path, help="one that is built already")
+    arguments = parser.parse_args()
+    wheel = arguments.wheel or build(arguments.out)
     size = wheel.stat().st_size / 1e6
     print(f"{wheel.name}: {size:.1f} MB")
     if size > LARGEST:
@@ -68,9 +69,10 @@ def audit(wheel: Path) -> None:
 
 def check(wheel: Path, version: str) -> bool:
     """Whether this Python is there; the wheel works in an environment that holds nothing else."""
-    python = sys.executable if version == f"{sys.version_info[0]}.{sys.version_info[1]}" else None
-    python = python or shutil.which(f"python{version}")
-    if python is None:
+    own = version == f"{sys.version_info[0]}.{sys.version_info[1]}"
+    python = sys.executable if own else shutil.which(f"python{version}")
+    # A program of this name may stand for a version that is not installed.
+    if python is None or subprocess.run([python, "-c", ""], capture_output=True, check=False).returncode:
         print(f"Python {version}: not there")
         return False
     with tempfile.TemporaryDirectory() as folder:

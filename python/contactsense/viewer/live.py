@@ -8,21 +8,15 @@ import subprocess
 import sys
 
 from .. import _core
-from ..errors import InputError
 from .place import Place
 from .slot import Slot, slot_file
-from .view import View
 
 # The page is there after so long [s], or it is not to be had.
 _PATIENCE = 60.0
 
 
-def live_view(monitor: _core.ContactMonitor, place: Place) -> View:
-    """The page of a monitor.
-
-    Raises:
-        InputError: it cannot be opened.
-    """
+def start_page(monitor: _core.ContactMonitor, place: Place) -> tuple[Slot, subprocess.Popen[bytes], str]:
+    """Where instants go, the process that shows them, and what it says: the page's address, or why not."""
     file = slot_file()
     try:
         slot = Slot(file, monitor.robot, len(monitor.sensors), creates=True)
@@ -40,8 +34,4 @@ def live_view(monitor: _core.ContactMonitor, place: Place) -> View:
         told = process.stdout.readline().decode().strip() if ready else ""
     finally:
         file.unlink()  # it lives on for those that have it open
-    page = View(slot, process, told, monitor.robot.nq)
-    if not told.startswith("http://"):
-        page.close()
-        raise InputError(told or "port: the page could not be opened")
-    return page
+    return slot, process, told or "port: the page could not be opened"

@@ -192,6 +192,11 @@ def view(
         from .replay_view import replay_view
 
         return replay_view(source.robot.name, source, place)
-    from .live import live_view
+    from .live import start_page
 
-    return live_view(source, place)
+    slot, process, told = start_page(source, place)
+    page = View(slot, process, told, source.robot.nq)
+    if not told.startswith("http://"):
+        page.close()
+        raise InputError(told)
+    return page
