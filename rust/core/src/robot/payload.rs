@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::check::principal_moments;
 use super::ids::LinkIndex;
 use super::lump::{joined, placed};
+use super::numbers::LARGEST;
 use super::robot::Robot;
 use crate::error::{Error, Result};
 
@@ -28,7 +29,7 @@ impl Robot {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Input`] where a number is not finite, the mass is negative, or the inertia is none of a rigid body.
+    /// [`Error::Input`] where the robot has no such link, a number is not finite or too large, the mass is negative, or the inertia is none of a rigid body.
     pub fn with_payload(
         &self,
         link: LinkIndex,
@@ -36,11 +37,13 @@ impl Robot {
         com: Vector3<f64>,
         inertia: Matrix3<f64>,
     ) -> Result<Robot> {
-        if !mass.is_finite() || mass < 0.0 {
-            return Err(Error::input("mass", format!("must be finite and not negative [kg], not {mass}")));
+        self.check_link(link)?;
+        if !(0.0..LARGEST).contains(&mass) {
+            let text = format!("must be finite, below {LARGEST:e} and not negative [kg], not {mass}");
+            return Err(Error::input("mass", text));
         }
-        if !com.iter().all(|x| x.is_finite()) {
-            return Err(Error::input("com", "must be 3 finite numbers [m]"));
+        if !com.iter().all(|x| x.abs() < LARGEST) {
+            return Err(Error::input("com", format!("must be 3 finite numbers below {LARGEST:e} [m]")));
         }
         let slack = ROUNDING * inertia.amax();
         let is_symmetric = (inertia - inertia.transpose()).amax() <= slack;
