@@ -186,7 +186,11 @@ fn settings(objects: &mut Objects, random: &mut Random) -> Result<bool> {
         7 => monitor.miss((!random.once_in(3)).then(|| random.number(4))),
         8 => monitor.reset(),
         9 => drop(monitor.propose_payload()?),
-        10 => return Ok(all(monitor.acceleration()) && monitor.bias().is_none_or(all)),
+        10 => {
+            // It is not known, and says so, behind external torques without velocities.
+            let unknown = monitor.acceleration().iter().all(|value| value.is_nan());
+            return Ok((unknown || all(monitor.acceleration())) && monitor.bias().is_none_or(all));
+        }
         _ => return Ok(finite_report(monitor.report()) && monitor.time().is_finite()),
     }
     Ok(true)

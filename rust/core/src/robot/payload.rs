@@ -90,4 +90,16 @@ mod tests {
             assert!(refused.unwrap_err().to_string().contains("inertia"));
         }
     }
+
+    #[test]
+    fn a_payload_that_cannot_be_held_is_refused() {
+        let robot = Robot::example_arm();
+        let refused = |link: usize, mass: f64, com: f64| {
+            let com = Vector3::new(com, 0.0, 0.0);
+            robot.with_payload(LinkIndex::new(link), mass, com, Matrix3::zeros()).unwrap_err().to_string()
+        };
+        assert!(refused(robot.links().len(), 1.0, 0.0).contains("link"));
+        assert!(refused(6, 1e300, 0.0).contains("mass"));
+        assert!(refused(6, 1.0, 1e300).contains("com"));
+    }
 }
