@@ -134,7 +134,17 @@ def main(seconds: float, count: int, seed: int) -> int:
     robot = cs.Robot.named("iiwa14")
     objects = made(robot)
     calls = callables(objects)
-    valid = [*objects, np.full(7, 0.3), np.zeros(7), np.zeros(6), np.zeros((4, 3)), 1e-3, 0.1, 10, robot.link_names[-1]]
+    valid = [
+        *objects,
+        np.full(7, 0.3),
+        np.zeros(7),
+        np.zeros(6),
+        np.zeros((4, 3)),
+        1e-3,
+        0.1,
+        10,
+        robot.link_names[-1],
+    ]
     outcomes: Counter[str] = Counter()
     wrong: Counter[str] = Counter()
     start, done = time.monotonic(), 0
@@ -157,7 +167,9 @@ def main(seconds: float, count: int, seed: int) -> int:
         finally:
             signal.setitimer(signal.ITIMER_REAL, 0)
     robot.mass_matrix(np.zeros(7))
-    print(f"{done} calls of {len(calls)} callables, seed {seed}: {dict(outcomes)}; {sum(wrong.values())} wrong")
+    print(
+        f"{done} calls of {len(calls)} callables, seed {seed}: {dict(outcomes)}; {sum(wrong.values())} wrong"
+    )
     for text, times in wrong.most_common(40):
         print(f"  {times} x {text}")
     return len(wrong)

@@ -1,4 +1,4 @@
-"""Random objects to everything public, and several threads on one object: typed errors, never a panic or a crash."""
+"""Random objects to everything public, several threads on one object: typed errors, never a crash."""
 
 import os
 import subprocess
@@ -24,6 +24,18 @@ def test_random_objects_are_answered_or_refused_by_a_typed_error(tmp_path):
     ended = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True, timeout=2 * float(LONG))
     assert ended.returncode == 0, ended.stdout + ended.stderr
     assert int(ended.stdout.split()[0]) >= min(int(COUNT or 100), 100)
+
+
+@pytest.mark.parametrize("odd", [np.zeros(3), np.zeros(0), [1.0], 3])
+def test_arrays_in_place_of_words_are_refused_by_name(odd, tmp_path):
+    robot = cs.Robot.named("iiwa14")
+    with pytest.raises(cs.InputError, match="name: "):
+        cs.Robot.named(odd)
+    for argument in ["external", "columns", "units"]:
+        with pytest.raises(cs.InputError, match=f"{argument}: expected"):
+            cs.read_log(tmp_path / "log.csv", robot, **{argument: odd})
+    with pytest.raises(cs.InputError, match="rate: expected"):
+        cs.read_log(tmp_path / "log.csv", robot, rate="fast")
 
 
 @pytest.mark.parametrize("name", ["monitor", "filter", "map", "isolator"])
