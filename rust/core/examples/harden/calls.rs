@@ -78,6 +78,8 @@ impl Objects {
         let wrenches = [Some([0.1; 6])];
         let of_monitor = &wrenches[..self.monitor.sensors().len()];
         let exerted = vec![Some(Vector6::repeat(0.1)); self.isolator.sensor_names().len()];
+        // It may have run on external torques.
+        self.monitor.reset();
         let finite = [
             finite_report(self.monitor.update(&Sample::new(&q, &zeros, &tau).wrenches(of_monitor))?),
             finite_isolation(self.isolator.isolate_sensed(&q, &tau, &exerted)?),
