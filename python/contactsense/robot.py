@@ -215,6 +215,6 @@ def _restore(
 
 def description_file(name: str) -> Any:
     """The packaged URDF of a named robot, as a `Traversable`."""
-    if name not in DESCRIPTIONS:
+    if not isinstance(name, str) or name not in DESCRIPTIONS:
         raise InputError(f"name: there is no robot {name!r}; there are {', '.join(DESCRIPTIONS)}")
     return resources.files("contactsense") / "descriptions" / f"{name}.urdf"

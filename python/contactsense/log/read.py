@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -90,6 +91,13 @@ def read_log(
 
     if not isinstance(robot, _core.Robot):
         raise InputError(f"robot: expected a contactsense.Robot, got {type(robot).__name__}")
+    if not isinstance(external, bool | np.bool_):
+        raise InputError(f"external: expected True or False, got {type(external).__name__}")
+    for argument, given in [("columns", columns), ("units", units)]:
+        if given is not None and not isinstance(given, Mapping):
+            raise InputError(f"{argument}: expected a mapping, got {type(given).__name__}")
+    if rate is not None and not isinstance(rate, Real):
+        raise InputError(f"rate: expected a number, got {type(rate).__name__}")
     if external and robot.floating_base:
         raise InputError("external: an external torque alone is read for robots with a fixed base")
     columns, units = dict(columns or {}), dict(units or {})

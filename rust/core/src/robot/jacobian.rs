@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, Vector3, Vector6};
 
 use super::ids::LinkIndex;
 use super::kinematics::Kinematics;
+use super::numbers::LARGEST;
 use super::robot::Robot;
 use crate::error::{Error, Result};
 use crate::robot::joint_axis::motion_axis;
@@ -49,8 +50,13 @@ impl Robot {
     pub fn jacobian(&self, q: &[f64], link: LinkIndex, point: Option<[f64; 3]>) -> Result<DMatrix<f64>> {
         let (kinematics, pose) = self.placed(q, link)?;
         let point = match point {
-            Some(point) if point.iter().all(|x| x.is_finite()) => Vector3::from(point),
-            Some(_) => return Err(Error::input("point", "all entries must be finite")),
+            Some(point) if point.iter().all(|x| x.abs() < LARGEST) => Vector3::from(point),
+            Some(_) => {
+                return Err(Error::input(
+                    "point",
+                    format!("all entries must be finite and below {LARGEST:e}"),
+                ))
+            }
             None => pose.translation,
         };
         let from_origin = point - kinematics.origin;
@@ -69,11 +75,16 @@ impl Robot {
         Ok(self.placed(q, link)?.1)
     }
 
+    pub(super) fn check_link(&self, link: LinkIndex) -> Result<()> {
+        if link.get() < self.links.len() {
+            return Ok(());
+        }
+        Err(Error::input("link", format!("index {} of {}", link.get(), self.links.len())))
+    }
+
     fn placed(&self, q: &[f64], link: LinkIndex) -> Result<(Kinematics, Pose)> {
         self.check_configuration(q)?;
-        if link.get() >= self.links.len() {
-            return Err(Error::input("link", format!("index {} of {}", link.get(), self.links.len())));
-        }
+        self.check_link(link)?;
         let mut kinematics = Kinematics::new(self);
         kinematics.set_configuration(self, q);
         let pose = kinematics.link_pose(self, link);

@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::check::principal_moments;
 use super::ids::LinkIndex;
 use super::lump::{joined, placed};
+use super::numbers::LARGEST;
 use super::robot::Robot;
 use crate::error::{Error, Result};
 
@@ -28,7 +29,7 @@ impl Robot {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Input`] where a number is not finite, the mass is negative, or the inertia is none of a rigid body.
+    /// [`Error::Input`] where the robot has no such link, a number is not finite or too large, the mass is negative, or the inertia is none of a rigid body.
     pub fn with_payload(
         &self,
         link: LinkIndex,
@@ -36,11 +37,13 @@ impl Robot {
         com: Vector3<f64>,
         inertia: Matrix3<f64>,
     ) -> Result<Robot> {
-        if !mass.is_finite() || mass < 0.0 {
-            return Err(Error::input("mass", format!("must be finite and not negative [kg], not {mass}")));
+        self.check_link(link)?;
+        if !(0.0..LARGEST).contains(&mass) {
+            let text = format!("must be finite, below {LARGEST:e} and not negative [kg], not {mass}");
+            return Err(Error::input("mass", text));
         }
-        if !com.iter().all(|x| x.is_finite()) {
-            return Err(Error::input("com", "must be 3 finite numbers [m]"));
+        if !com.iter().all(|x| x.abs() < LARGEST) {
+            return Err(Error::input("com", format!("must be 3 finite numbers below {LARGEST:e} [m]")));
         }
         let slack = ROUNDING * inertia.amax();
         let is_symmetric = (inertia - inertia.transpose()).amax() <= slack;
@@ -86,5 +89,17 @@ mod tests {
             );
             assert!(refused.unwrap_err().to_string().contains("inertia"));
         }
+    }
+
+    #[test]
+    fn a_payload_that_cannot_be_held_is_refused() {
+        let robot = Robot::example_arm();
+        let refused = |link: usize, mass: f64, com: f64| {
+            let com = Vector3::new(com, 0.0, 0.0);
+            robot.with_payload(LinkIndex::new(link), mass, com, Matrix3::zeros()).unwrap_err().to_string()
+        };
+        assert!(refused(robot.links().len(), 1.0, 0.0).contains("link"));
+        assert!(refused(6, 1e300, 0.0).contains("mass"));
+        assert!(refused(6, 1.0, 1e300).contains("com"));
     }
 }
