@@ -100,9 +100,9 @@ pub fn run(count: u64, seed: u64, strict: bool) -> Result<bool> {
         if random.once_in(CONTACTS[0]) {
             touched = random.below(CONTACTS[1]);
         }
-        for j in 0..tau.len() {
-            let contact = if touched > 0 { at.contact[j] } else { 0.0 };
-            tau[j] = at.tau[j] - contact + NOISE * random.normal();
+        let share = if touched > 0 { 1.0 } else { 0.0 };
+        for (tau, (free, contact)) in tau.iter_mut().zip(at.tau.iter().zip(&at.contact)) {
+            *tau = free - share * contact + NOISE * random.normal();
         }
         ticks += 1;
         if ticks % RESET_TICKS == 0 {
