@@ -58,7 +58,7 @@ def test_a_licence_that_is_not_allowed_is_refused(
 
 def test_lowest_versions_are_those_of_the_project() -> None:
     pins = lowest.lowest()
-    assert {"numpy", "pin", "pyyaml", "typer", "mujoco", "matplotlib", "rosbags"} <= {
+    assert {"numpy", "pyyaml", "typer", "mujoco", "matplotlib", "rosbags"} <= {
         pin.split("==")[0] for pin in pins
     }
     assert all((ROOT / "tests" / name).exists() for name in lowest.TESTS)
