@@ -30,7 +30,7 @@ TESTS = (
         "test_sim_runs.py",
     ),
 )
-# Its own dependencies have no upper bounds: older versions are installed with libraries that they cannot load.
+# Its own dependencies have no upper bounds: older versions come with libraries that they cannot load.
 NEWEST = {"pin"}
 TOOLS = ("pytest>=9", "pytest-timeout>=2.3", "hypothesis>=6.100")
 
