@@ -16,12 +16,18 @@ def demo(path: Path) -> None:
     subprocess.run([*_CONTACTSENSE, "demo", "--out", path], check=True, stdout=subprocess.DEVNULL)
 
 
-def identifiability(path: Path) -> None:
-    """How exactly torques locate a contact, on an arm and a humanoid."""
+def _of_study(path: Path) -> None:
+    """The picture of a study of this name."""
     with tempfile.TemporaryDirectory() as folder:
-        command = [*_CONTACTSENSE, "study", "identifiability", "--png", folder]
+        command = [*_CONTACTSENSE, "study", path.stem, "--png", folder]
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         path.write_bytes((Path(folder) / path.name).read_bytes())
 
 
-PICTURES: dict[str, Callable[[Path], None]] = {"demo": demo, "identifiability": identifiability}
+PICTURES: dict[str, Callable[[Path], None]] = {
+    "demo": demo,
+    # How well the classes of contacts are told, on three robots.
+    "contact_classes": _of_study,
+    # How exactly torques locate a contact, on an arm and a humanoid.
+    "identifiability": _of_study,
+}

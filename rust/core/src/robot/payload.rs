@@ -29,7 +29,8 @@ impl Robot {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Input`] where the robot has no such link, a number is not finite or too large, the mass is negative, or the inertia is none of a rigid body.
+    /// [`Error::Input`] where the robot has no such link, a number is not finite or too large, the mass is negative, or the
+    /// inertia is none of a rigid body.
     pub fn with_payload(
         &self,
         link: LinkIndex,
@@ -39,7 +40,7 @@ impl Robot {
     ) -> Result<Robot> {
         self.check_link(link)?;
         if !(0.0..LARGEST).contains(&mass) {
-            let text = format!("must be finite, below {LARGEST:e} and not negative [kg], not {mass}");
+            let text = format!("must be finite and not negative, below {LARGEST:e} [kg], not {mass}");
             return Err(Error::input("mass", text));
         }
         if !com.iter().all(|x| x.abs() < LARGEST) {
