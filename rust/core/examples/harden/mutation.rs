@@ -1,38 +1,8 @@
 //! Damage to the bytes of a file.
 
+use crate::originals::WORDS;
 use crate::random::Random;
 
-/// What parsers and arithmetic stumble over.
-const WORDS: [&str; 28] = [
-    "0",
-    "-1",
-    "1",
-    "1e308",
-    "-1e-320",
-    "nan",
-    "inf",
-    "4294967295",
-    "4294967296",
-    "18446744073709551615",
-    "9223372036854775807",
-    "-9223372036854775808",
-    "1000000",
-    "\n",
-    " ",
-    "\\\n",
-    "\"",
-    "<",
-    "/>",
-    "&#0;",
-    "\0",
-    "#n0",
-    "offset=\"99\"",
-    "é",
-    "- ",
-    ": ",
-    "[[",
-    "&a *a",
-];
 /// Longest part that is removed or copied (bytes).
 const LONGEST: usize = 80;
 /// Most copies of it.

@@ -60,3 +60,35 @@ pub const URDF: &str = r#"<?xml version="1.0"?><robot name="r"><link name="a"><c
 pub fn whole_urdf() -> String {
     URDF.replace(r#"<mesh filename="none.stl" scale="1 1 1"/>"#, r#"<sphere radius="0.2"/>"#)
 }
+
+/// What parsers and arithmetic stumble over.
+pub const WORDS: [&str; 28] = [
+    "0",
+    "-1",
+    "1",
+    "1e308",
+    "-1e-320",
+    "nan",
+    "inf",
+    "4294967295",
+    "4294967296",
+    "18446744073709551615",
+    "9223372036854775807",
+    "-9223372036854775808",
+    "1000000",
+    "\n",
+    " ",
+    "\\\n",
+    "\"",
+    "<",
+    "/>",
+    "&#0;",
+    "\0",
+    "#n0",
+    "offset=\"99\"",
+    "é",
+    "- ",
+    ": ",
+    "[[",
+    "&a *a",
+];

@@ -11,41 +11,13 @@ use contactsense::Error;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRng, TestRunner};
 
-use originals::{ascii_stl, binary_stl, whole_urdf, COLLADA, OBJ, URDF};
+use originals::{ascii_stl, binary_stl, whole_urdf, COLLADA, OBJ, URDF, WORDS};
 
 #[path = "../../examples/harden/originals.rs"]
 mod originals;
 
 /// Damaged files of each kind; more are tried where `MUTATED_FILES` says so.
 const CASES: u32 = 1500;
-
-/// What parsers and arithmetic stumble over.
-const WORDS: [&str; 24] = [
-    "0",
-    "-1",
-    "1",
-    "1e308",
-    "-1e-320",
-    "nan",
-    "inf",
-    "4294967295",
-    "4294967296",
-    "18446744073709551615",
-    "9223372036854775807",
-    "-9223372036854775808",
-    "1000000",
-    "\n",
-    " ",
-    "\\\n",
-    "\"",
-    "<",
-    "/>",
-    "&#0;",
-    "\0",
-    "#n0",
-    "offset=\"99\"",
-    "é",
-];
 
 /// One change: where (as shares of the length), how long, and what.
 #[derive(Debug, Clone)]
