@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
@@ -56,3 +56,30 @@ def example_robot(file: str) -> Robot:
     """
     share = share_folder()
     return Robot.from_urdf(share / PACKAGE / "robots" / file, package_dirs=share)
+
+
+def available(
+    named: Iterable[str], usual: Iterable[str], describe: Callable[[str], Robot]
+) -> tuple[tuple[str, ...], dict[str, str]]:
+    """The robots that a study can have, and of those left out what is missing.
+
+    Args:
+        named: those that somebody asked for, all of which must be there; if empty, the usual ones.
+        usual: left out where they are not installed.
+        describe: loads one by name.
+
+    Raises:
+        MissingExtraError: one that is named is not installed.
+    """
+    named = tuple(dict.fromkeys(named))
+    there, skipped = [], {}
+    for name in named or usual:
+        try:
+            describe(name)
+        except MissingExtraError as missing:
+            if named:
+                raise
+            skipped[name] = str(missing)
+        else:
+            there.append(name)
+    return tuple(there), skipped

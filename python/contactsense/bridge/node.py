@@ -16,6 +16,8 @@ from .joint_order import JointOrder, MissingJointsError, OtherJointsError
 from .stamps import LateError, Stamps
 from .values import ExternalTorque, Health, JointReading, LinkWrench, Published, Row
 
+# Between two diagnostics, of every transport [s].
+PERIOD = 1.0
 # Steps longer than so many configured ones leave a gap.
 _GAP = 5.0
 # Characters of a reason that are kept: it may tell of what was received.

@@ -11,13 +11,11 @@ import numpy as np
 from ..errors import InputError
 from ..offline.ros_messages import DIAGNOSTICS, JOINT_STATE, MARKERS, NANOSECONDS, WRENCH
 from .configuration import Configuration
-from .node import ContactNode
+from .node import PERIOD, ContactNode
 from .output_messages import message_of
 from .ros2_messages import Ros2Messages
 from .values import JointReading, Published
 
-# Between two diagnostics [s].
-PERIOD = 1.0
 # Messages that wait for a slow subscriber.
 _DEPTH = 10
 

@@ -14,11 +14,9 @@ from ..offline.ros_messages import DIAGNOSTICS, JOINT_STATE, MARKERS, WRENCH, Me
 from .cdr import CdrNode, PublishedBytes
 from .configuration import Configuration
 from .endpoints import Endpoints
-from .node import ContactNode
+from .node import PERIOD, ContactNode
 from .rmw_zenoh import NO_HASH, Attachments, Graph, Losses, key_expression
 
-# Between two diagnostics [s].
-PERIOD = 1.0
 # Joint states that wait while the bridge is busy; of more, the oldest are left out: a second at 1 kHz. A
 # queue that is bounded otherwise would hold up the sender.
 _WAITING = 1000

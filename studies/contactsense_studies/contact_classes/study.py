@@ -8,9 +8,9 @@ from typing import TypeAlias
 import numpy as np
 
 from contactsense import Robot, calibrate, exciting_motion
-from contactsense._extras import MissingExtraError
 from contactsense.sim import ImperfectArm, JointMotion, rated_torque, record_imperfect
 
+from ..example_robots import available
 from ..harness import Report, silent
 from ..parallel import run_trials
 from .arms import JUDGED, described
@@ -53,27 +53,13 @@ def run(options: Options | None = None, *, processes: int | None = None, progres
         MissingExtraError: an arm that `options` names is not installed.
     """
     options = options or Options()
-    arms, skipped = _available(options)
+    arms, skipped = available(options.arms, JUDGED, described)
     items = []
     for arm in arms:
         for number, first in enumerate(range(0, options.scenes, PER_ARM)):
             items.append((arm, options.seed, number, min(PER_ARM, options.scenes - first)))
     found, complete = run_trials(_trial, items, "scenes", processes, progress, weight=lambda item: item[3])
     return Study(options, arms, skipped, [each for part in found for each in part], complete)
-
-
-def _available(options: Options) -> tuple[tuple[str, ...], dict[str, str]]:
-    arms, skipped = [], {}
-    for name in dict.fromkeys(options.arms) or JUDGED:
-        try:
-            described(name)
-        except MissingExtraError as missing:
-            if options.arms:
-                raise
-            skipped[name] = str(missing)
-        else:
-            arms.append(name)
-    return tuple(arms), skipped
 
 
 def _trial(item: Item) -> list[Judged]:

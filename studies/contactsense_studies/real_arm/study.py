@@ -8,9 +8,9 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from contactsense import calibrate
-from contactsense._extras import MissingExtraError
 from contactsense.sim import ImperfectArm
 
+from ..example_robots import available
 from ..harness import Report, silent
 from ..parallel import run_trials
 from .arms import ARMS, described
@@ -63,24 +63,10 @@ def run(options: Options | None = None, *, processes: int | None = None, progres
         ModelError, GeometryError: a robot cannot be used.
     """
     options = options or Options()
-    arms, skipped = _available(options)
+    arms, skipped = available(options.arms, ARMS, described)
     items = [(options, name, number) for number in range(options.trials) for name in arms]
     trials, complete = run_trials(_trial, items, "trials", processes, progress)
     return Study(options, arms, skipped, trials, complete)
-
-
-def _available(options: Options) -> tuple[tuple[str, ...], dict[str, str]]:
-    arms, skipped = [], {}
-    for name in dict.fromkeys(options.arms) or ARMS:
-        try:
-            described(name)
-        except MissingExtraError as missing:
-            if options.arms:
-                raise
-            skipped[name] = str(missing)
-        else:
-            arms.append(name)
-    return tuple(arms), skipped
 
 
 def _trial(item: Item) -> Trial:
