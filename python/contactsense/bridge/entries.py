@@ -82,10 +82,6 @@ class Entries:
         wanted = f"{_WANTED[rule]} [{unit}]"
         return self._number(name, self.take(name, wanted), wanted, rule)
 
-    def numbers(self, name: str, count: int, unit: str, rule: Rule = "any") -> list[float]:
-        """An entry that is a list of so many numbers."""
-        return self.listed(name, self.take(name, f"a list of {count} numbers [{unit}]"), count, unit, rule)
-
     def listed(self, name: str, value: Any, count: int, unit: str, rule: Rule = "any") -> list[float]:
         """A value that is a list of so many numbers."""
         if not isinstance(value, list) or len(value) != count:
