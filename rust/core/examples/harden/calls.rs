@@ -7,7 +7,7 @@ use contactsense::map::{ContactMap, MapOptions};
 use contactsense::monitor::{ContactMonitor, ContactReport};
 use contactsense::observer::MomentumObserver;
 use contactsense::particle::{ContactParticleFilter, FilterOptions};
-use contactsense::robot::{LinkIndex, Robot};
+use contactsense::robot::{JointKind, LinkIndex, Robot, RobotDescription};
 use contactsense::sensor::{ForceTorqueSensor, LoadCompensator};
 use contactsense::surface::RayHit;
 use contactsense::{Error, ExternalSample, Result, Sample};
@@ -46,7 +46,7 @@ pub fn sensor(robot: &Robot) -> ForceTorqueSensor {
 impl Objects {
     /// Valid ones, with options that differ.
     pub fn new(random: &mut Random) -> Result<Self> {
-        let robot = Arc::new(Robot::example_arm());
+        let robot = Arc::new(any_robot(random)?);
         let sensors = if random.once_in(2) { vec![sensor(&robot)] } else { vec![] };
         let mut options = monitor_options(&robot, random.once_in(2));
         options.dt = DT;
@@ -73,7 +73,7 @@ impl Objects {
 
     /// Gives every object what is right: each must answer.
     pub fn probe(&mut self) -> Result<()> {
-        let (q, zeros) = (vec![0.3; self.robot.nq()], vec![0.0; self.robot.nv()]);
+        let (q, zeros) = (self.robot.neutral(), vec![0.0; self.robot.nv()]);
         let tau = self.robot.inverse_dynamics(&q, &zeros, &zeros)?;
         let wrenches = [Some([0.1; 6])];
         let of_monitor = &wrenches[..self.monitor.sensors().len()];
@@ -93,6 +93,40 @@ impl Objects {
             Some(k) => Err(Error::input("probe", format!("{k} is not finite"))),
         }
     }
+}
+
+/// The example arm with joints of other kinds: a floating base, a turning joint without limits, a sliding one.
+fn any_robot(random: &mut Random) -> Result<Robot> {
+    let mut description = RobotDescription::example_arm();
+    for (k, kind) in [(0, JointKind::FreeFlyer), (2, JointKind::Continuous), (3, JointKind::Prismatic)] {
+        if random.once_in(3) {
+            description.joints[k].kind = kind;
+        }
+    }
+    if random.once_in(2) {
+        (description.joints[5].lower, description.joints[5].upper) = (Some(-2.0), Some(2.0));
+    }
+    Robot::new(description)
+}
+
+/// A position, often valid: quaternions, and cosines with sines, are then of length one.
+pub fn configuration(robot: &Robot, random: &mut Random) -> Vec<f64> {
+    let mut q = random.vector(robot.nq());
+    if q.len() != robot.nq() || random.once_in(20) {
+        return q;
+    }
+    let mut first = 0;
+    for joint in robot.joint_kinds() {
+        let turn = match joint {
+            JointKind::FreeFlyer => &mut q[first + 3..first + 7],
+            JointKind::Continuous => &mut q[first..first + 2],
+            JointKind::Revolute | JointKind::Prismatic => &mut [][..],
+        };
+        first += joint.nq();
+        let length = turn.iter().map(|x| x * x).sum::<f64>().sqrt();
+        turn.iter_mut().for_each(|x| *x /= length);
+    }
+    q
 }
 
 fn all(values: &[f64]) -> bool {
@@ -148,7 +182,7 @@ fn monitor(objects: &mut Objects, random: &mut Random) -> (&'static str, Result<
 
 fn update(objects: &mut Objects, random: &mut Random) -> Result<bool> {
     let (robot, monitor) = (&objects.robot, &mut objects.monitor);
-    let (q, v, tau) = (random.vector(robot.nq()), random.vector(robot.nv()), random.vector(robot.nv()));
+    let (q, v, tau) = (configuration(robot, random), random.vector(robot.nv()), random.vector(robot.nv()));
     let (friction, wrenches) = (random.vector(robot.nv()), random.wrenches(monitor.sensors().len()));
     let mut sample = Sample::new(&q, &v, &tau).wrenches(&wrenches);
     if random.once_in(4) {
@@ -162,7 +196,7 @@ fn update(objects: &mut Objects, random: &mut Random) -> Result<bool> {
 
 fn update_external(objects: &mut Objects, random: &mut Random) -> Result<bool> {
     let (robot, monitor) = (&objects.robot, &mut objects.monitor);
-    let (q, v, torque) = (random.vector(robot.nq()), random.vector(robot.nv()), random.vector(robot.nv()));
+    let (q, v, torque) = (configuration(robot, random), random.vector(robot.nv()), random.vector(robot.nv()));
     let wrenches = random.wrenches(monitor.sensors().len());
     let mut sample = ExternalSample::new(&q, &torque).wrenches(&wrenches);
     if random.once_in(2) {
@@ -200,7 +234,7 @@ fn settings(objects: &mut Objects, random: &mut Random) -> Result<bool> {
 
 fn isolator(objects: &mut Objects, random: &mut Random) -> Result<bool> {
     let robot = &objects.robot;
-    let (q, torque) = (random.vector(robot.nq()), random.vector(robot.nv()));
+    let (q, torque) = (configuration(robot, random), random.vector(robot.nv()));
     if random.once_in(3) {
         let wrenches: Vec<_> = random.wrenches(objects.isolator.sensor_names().len());
         let wrenches: Vec<_> = wrenches.into_iter().map(|wrench| wrench.map(Vector6::from)).collect();
@@ -211,7 +245,7 @@ fn isolator(objects: &mut Objects, random: &mut Random) -> Result<bool> {
 
 fn observer(objects: &mut Objects, random: &mut Random) -> Result<bool> {
     let (robot, observer) = (&objects.robot, &mut objects.observer);
-    let (q, v, tau) = (random.vector(robot.nq()), random.vector(robot.nv()), random.vector(robot.nv()));
+    let (q, v, tau) = (configuration(robot, random), random.vector(robot.nv()), random.vector(robot.nv()));
     match random.below(12) {
         0 => observer.set_gain(&random.vector(robot.nv())).map(|()| true),
         1 => {
@@ -226,7 +260,7 @@ fn observer(objects: &mut Objects, random: &mut Random) -> Result<bool> {
 
 fn compensator(objects: &mut Objects, random: &mut Random) -> Result<bool> {
     let (robot, compensator) = (&objects.robot, &mut objects.compensator);
-    let (q, v, a) = (random.vector(robot.nq()), random.vector(robot.nv()), random.vector(robot.nv()));
+    let (q, v, a) = (configuration(robot, random), random.vector(robot.nv()), random.vector(robot.nv()));
     let wrenches = random.wrenches(1);
     match random.below(8) {
         0 => compensator.tare(&q, &wrenches).map(|()| true),
@@ -242,10 +276,10 @@ fn compensator(objects: &mut Objects, random: &mut Random) -> Result<bool> {
 fn map(objects: &mut Objects, random: &mut Random) -> Result<bool> {
     let robot = &objects.robot;
     if random.once_in(8) {
-        let q = random.vector(robot.nq());
+        let q = configuration(robot, random);
         return objects.map.identifiability(&q, random.number(3)).map(|_| true);
     }
-    let estimate = objects.map.evaluate(&random.vector(robot.nq()), &random.vector(robot.nv()))?;
+    let estimate = objects.map.evaluate(&configuration(robot, random), &random.vector(robot.nv()))?;
     Ok(estimate.log_evidence.is_finite())
 }
 
@@ -254,7 +288,7 @@ fn filter(objects: &mut Objects, random: &mut Random) -> Result<bool> {
     if random.once_in(20) {
         objects.filter.reset();
     }
-    objects.filter.update(&random.vector(robot.nq()), &random.vector(robot.nv()))?;
+    objects.filter.update(&configuration(robot, random), &random.vector(robot.nv()))?;
     Ok(all(objects.filter.weights()))
 }
 
@@ -282,7 +316,7 @@ fn surface(objects: &mut Objects, random: &mut Random) -> bool {
 fn robot(objects: &Objects, random: &mut Random) -> Result<bool> {
     let robot = &objects.robot;
     let nv = robot.nv();
-    let (q, v, a) = (random.vector(robot.nq()), random.vector(nv), random.vector(nv));
+    let (q, v, a) = (configuration(robot, random), random.vector(nv), random.vector(nv));
     let ok = |values: Vec<f64>| all(&values);
     match random.below(9) {
         0 => robot.inverse_dynamics(&q, &v, &a).map(ok),
@@ -295,13 +329,13 @@ fn robot(objects: &Objects, random: &mut Random) -> Result<bool> {
         5 => robot.integrate(&q, &v).map(ok),
         6 => robot
             .configuration(
-                &[("joint_1", random.number(3)), (random.one_of(&["", "joint_2", "none"]), 1.0)],
+                &[("joint_5", random.number(3)), (random.one_of(&["", "joint_6", "none"]), 1.0)],
                 None,
             )
             .map(ok),
         7 => robot
-            .velocity(&[("joint_1", random.number(3))], random.once_in(4).then(|| random.array()).as_ref())
+            .velocity(&[("joint_5", random.number(3))], random.once_in(4).then(|| random.array()).as_ref())
             .map(ok),
-        _ => robot.torque(&[("joint_1", random.number(3))]).map(ok),
+        _ => robot.torque(&[("joint_5", random.number(3))]).map(ok),
     }
 }

@@ -16,11 +16,12 @@ use contactsense::sensor::{identify_tool, LoadCompensator};
 use contactsense::{best_cone_force, NoiseModel, Result};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::calls::{link, sensor};
+use crate::calls::{configuration, link, sensor};
 use crate::random::Random;
 
-/// Most rows of a log.
+/// Most rows of a log: of most, which are then too short, and of one in twenty.
 const ROWS: usize = 60;
+const LONG_ROWS: usize = 3000;
 /// Times of motions that must be refused (s).
 const BAD_TIMES: [f64; 6] = [f64::NAN, f64::INFINITY, f64::MAX, -1.0, 0.0, 5e-324];
 
@@ -113,12 +114,15 @@ fn isolation(robot: &Robot, random: &mut Random) -> IsolatorOptions {
 }
 
 fn log(robot: &Robot, random: &mut Random) -> Result<bool> {
-    let (rows, step) = (random.below(ROWS), random.one_of(&[0.001, 0.05, 0.3, 0.0, -1.0, 1e300]));
+    let most = if random.once_in(20) { LONG_ROWS } else { ROWS };
+    let rows = random.below(most);
+    let step = random.one_of(&[0.001, 0.05, 0.3, 0.0, -1.0, 1e300]);
     let mut columns = |width: usize| -> Vec<f64> {
         let odd = random.one_of(&[usize::MAX, usize::MAX, 50]);
         (0..rows * width).map(|_| random.number(odd)).collect()
     };
-    let (q, v, tau) = (columns(robot.nq()), columns(robot.nv()), columns(robot.nv()));
+    let (v, tau) = (columns(robot.nv()), columns(robot.nv()));
+    let q: Vec<f64> = (0..rows).flat_map(|_| configuration(robot, random)).collect();
     let time: Vec<f64> = (0..rows).map(|k| k as f64 * step).collect();
     if random.once_in(2) {
         let time = random.once_in(2).then_some(&time[..]);
@@ -195,7 +199,7 @@ pub fn make(robot: &Arc<Robot>, random: &mut Random) -> (&'static str, Result<bo
         }
         18..=20 => {
             let noise = noise(robot, random);
-            let (q, gain, dt) = (random.vector(robot.nq()), random.number(3), random.number(3));
+            let (q, gain, dt) = (configuration(robot, random), random.number(3), random.number(3));
             let made = noise
                 .covariance(robot, &q, gain, dt)
                 .and_then(|_| noise.correlation_time(robot, &q, gain, dt));
@@ -211,7 +215,7 @@ pub fn make(robot: &Arc<Robot>, random: &mut Random) -> (&'static str, Result<bo
         }
         23 => {
             let poses = random.below(8);
-            let q: Vec<f64> = (0..poses).flat_map(|_| random.vector(robot.nq())).collect();
+            let q: Vec<f64> = (0..poses).flat_map(|_| configuration(robot, random)).collect();
             let wrenches = random.wrenches(poses);
             ("identify_tool", identify_tool(robot, &sensor(robot), &q, &wrenches).map(|_| true))
         }

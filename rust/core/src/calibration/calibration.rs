@@ -176,6 +176,9 @@ impl CalibrationOptions {
             let text = format!("must be positive [1/h], not {}", self.false_alarms_per_hour);
             return Err(Error::input("false_alarms_per_hour", text));
         }
+        if let Some(link) = self.payload_link {
+            robot.check_link("payload_link", link)?;
+        }
         match self.payload_link {
             Some(_) if self.torque_is_external => {
                 let text = "needs the torques of the motors: an external torque says nothing of weights";

@@ -6,6 +6,9 @@ use crate::error::{Error, Result};
 use crate::robot::Robot;
 use crate::sensor::SensorTree;
 
+/// No sensor resolves less (Nm, N), and squares of it are far from the smallest numbers.
+const SMALLEST_THRESHOLD: f64 = 1e-12;
+
 /// Whether a signal is over its threshold. One that is no number is not.
 #[inline]
 pub(crate) fn is_over(value: f64, threshold: f64) -> bool {
@@ -84,16 +87,19 @@ pub(crate) fn check_hold_time(hold_time: f64) -> Result<()> {
 /// One threshold for all velocity variables, or one for each; positive and finite.
 pub(crate) fn check_threshold(robot: &Robot, threshold: &[f64]) -> Result<Vec<f64>> {
     let threshold = robot.per_velocity("torque_threshold", threshold)?;
-    if threshold.iter().any(|x| *x <= 0.0) {
-        return Err(Error::input("torque_threshold", "must be positive [Nm]"));
+    if let Some(wrong) = threshold.iter().find(|x| **x < SMALLEST_THRESHOLD) {
+        let text = format!("must be positive, at least {SMALLEST_THRESHOLD:e} [Nm], not {wrong:e}");
+        return Err(Error::input("torque_threshold", text));
     }
     Ok(threshold)
 }
 
 /// One threshold for all components of all sensors, six for each sensor, or six times the number of sensors.
 pub(crate) fn check_wrench_threshold(sensors: &SensorTree, threshold: &[f64]) -> Result<Vec<Vector6<f64>>> {
-    if threshold.iter().any(|x| !(x.is_finite() && *x > 0.0)) {
-        return Err(Error::input("wrench_threshold", "must be positive and finite [N, Nm]"));
+    if let Some(wrong) = threshold.iter().find(|x| !(x.is_finite() && **x >= SMALLEST_THRESHOLD)) {
+        let text =
+            format!("must be positive and finite, at least {SMALLEST_THRESHOLD:e} [N, Nm], not {wrong:e}");
+        return Err(Error::input("wrench_threshold", text));
     }
     match threshold.len() {
         1 => Ok(vec![Vector6::repeat(threshold[0]); sensors.len()]),

@@ -92,7 +92,7 @@ impl Measurement {
 
     /// Squared norm of the rows that feel a link, in standard deviations.
     pub fn felt(&self, link: usize) -> f64 {
-        self.target.on(link).torque.iter().map(|torque| torque * torque).sum()
+        self.target.on(link).squared
     }
 
     /// Logarithm of the likelihood without contact, but for a constant.

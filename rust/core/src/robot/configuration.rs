@@ -7,6 +7,9 @@ use crate::error::{Error, Result};
 
 /// Unit quaternions and (cos, sin) pairs may be off by this much (squared norm); they are normalised.
 const NORM_TOLERANCE: f64 = 1e-3;
+/// A slide that is farther from zero is no machine's (m): beside its mass times the square of that, rounding hides the inertias
+/// of what it carries, and nothing can be said of accelerations.
+const LONGEST_SLIDE: f64 = 1e4;
 
 impl Robot {
     /// The neutral configuration: joints at zero, base at the origin.
@@ -22,7 +25,7 @@ impl Robot {
         q
     }
 
-    /// Checks a configuration: length, finite, unit quaternion and (cos, sin) pairs.
+    /// Checks a configuration: length, finite, unit quaternion and (cos, sin) pairs, sliding joints within 10 km.
     ///
     /// # Errors
     /// [`Error::Input`] names the entry.
@@ -32,7 +35,10 @@ impl Robot {
             let part = match body.kind {
                 JointKind::FreeFlyer => &q[body.idx_q + 3..body.idx_q + 7],
                 JointKind::Continuous => &q[body.idx_q..body.idx_q + 2],
-                _ => continue,
+                JointKind::Prismatic if q[body.idx_q].abs() > LONGEST_SLIDE => {
+                    return Err(too_far(body.idx_q, q[body.idx_q]))
+                }
+                JointKind::Prismatic | JointKind::Revolute => continue,
             };
             let norm: f64 = part.iter().map(|x| x * x).sum();
             if (norm - 1.0).abs() > NORM_TOLERANCE {
@@ -90,6 +96,13 @@ fn not_unit(kind: JointKind, index: usize, norm: f64) -> Error {
         _ => format!("entries {index}..{} are (cos, sin) of a continuous joint", index + 2),
     };
     Error::input("q", format!("{text} and must have norm 1, not {norm:.6}"))
+}
+
+#[cold]
+fn too_far(index: usize, position: f64) -> Error {
+    let text =
+        format!("entry {index} of a sliding joint must be within {LONGEST_SLIDE:e} m, not {position:e}");
+    Error::input("q", text)
 }
 
 /// Writes `tau` as `nv` numbers, with zeros for an unactuated base.

@@ -75,16 +75,16 @@ impl Robot {
         Ok(self.placed(q, link)?.1)
     }
 
-    pub(super) fn check_link(&self, link: LinkIndex) -> Result<()> {
+    pub(crate) fn check_link(&self, argument: &'static str, link: LinkIndex) -> Result<()> {
         if link.get() < self.links.len() {
             return Ok(());
         }
-        Err(Error::input("link", format!("index {} of {}", link.get(), self.links.len())))
+        Err(Error::input(argument, format!("index {} of {}", link.get(), self.links.len())))
     }
 
     fn placed(&self, q: &[f64], link: LinkIndex) -> Result<(Kinematics, Pose)> {
         self.check_configuration(q)?;
-        self.check_link(link)?;
+        self.check_link("link", link)?;
         let mut kinematics = Kinematics::new(self);
         kinematics.set_configuration(self, q);
         let pose = kinematics.link_pose(self, link);

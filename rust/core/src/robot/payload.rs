@@ -38,7 +38,7 @@ impl Robot {
         com: Vector3<f64>,
         inertia: Matrix3<f64>,
     ) -> Result<Robot> {
-        self.check_link(link)?;
+        self.check_link("link", link)?;
         if !(0.0..LARGEST).contains(&mass) {
             let text = format!("must be finite and not negative, below {LARGEST:e} [kg], not {mass}");
             return Err(Error::input("mass", text));

@@ -9,4 +9,6 @@ pub(crate) struct LinkTarget {
     pub torque: Vec<f64>,
     /// Product of these with the columns of the frame's axes.
     pub product: Vector6<f64>,
+    /// Squared norm of the torques: twice the most that a contact can make of the logarithm of their likelihood.
+    pub squared: f64,
 }

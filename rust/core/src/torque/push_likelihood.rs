@@ -170,7 +170,9 @@ impl ForcePrior {
         let [h1, h2] =
             [first, second].map(|m| (m[0] * moment[0] + m[1] * moment[1] + m[2] * moment[2]) * scale);
         let [c1, c2] = with_force.map(|row| block.directions.map(|direction| dot(&direction, &row) * scale));
-        let determinant = g11 * g22 - g12 * g12;
+        // At least one, and nothing explains more than all, but for rounding.
+        let determinant = (g11 * g22 - g12 * g12).max(one);
+        let all = f64x4::splat(target.squared);
         let inverse = one / determinant;
         let solve = |a: f64x4, b: f64x4| ((g22 * a - g12 * b) * inverse, (g11 * b - g12 * a) * inverse);
         let by_place = solve(h1, h2);
@@ -192,7 +194,7 @@ impl ForcePrior {
             let volume = turn / ((found.left * width * width + turn) * found.freedom * determinant);
             let explained =
                 place_explains + found.explained + force * (found.shown * (2.0 * sign) - force * found.left);
-            (explained + volume.ln()) * 0.5 + log_prior
+            (explained.min(all) + volume.ln()) * 0.5 + log_prior
         };
         let force = found.shown / found.left;
         let (push, pull) = (self.bound(force), self.bound(-force));
@@ -229,7 +231,9 @@ impl ForcePrior {
             best.shown = along - gram[0][1] * of_target.0 - gram[0][2] * of_target.1;
             best.explained = beside_1 * of_target.0 + beside_2 * of_target.1;
             best.freedom = determinant / (precision * precision);
-            let normal = best.shown / best.left;
+            // Where next to no torque shows a force it would be without bound.
+            let greatest = f64x4::splat(self.range[1]);
+            let normal = (best.shown / best.left).max(-greatest).min(greatest);
             best.force = [normal, of_target.0 - of_unit.0 * normal, of_target.1 - of_unit.1 * normal];
             size = self.bound(normal.abs());
         }

@@ -18,7 +18,7 @@ pub(crate) struct Target {
 impl Target {
     /// For these frames; all zero.
     pub fn new(frames: &Frames) -> Self {
-        let link = |rows| LinkTarget { torque: vec![0.0; rows], product: Vector6::zeros() };
+        let link = |rows| LinkTarget { torque: vec![0.0; rows], product: Vector6::zeros(), squared: 0.0 };
         Target { links: frames.links.iter().map(|frame| link(frame.rows().len())).collect(), squared: 0.0 }
     }
 
@@ -31,11 +31,13 @@ impl Target {
     pub fn set_on(&mut self, links: &[usize], frames: &Frames, torque: &[f64], deviation: &[f64]) {
         self.squared = torque.iter().zip(deviation).map(|(torque, noise)| (torque / noise).powi(2)).sum();
         for &link in links {
-            let (frame, LinkTarget { torque: own, product }) = (&frames.links[link], &mut self.links[link]);
-            *product = Vector6::zeros();
+            let (frame, target) = (&frames.links[link], &mut self.links[link]);
+            let LinkTarget { torque: own, product, squared } = target;
+            (*product, *squared) = (Vector6::zeros(), 0.0);
             for (axis, (value, &k)) in own.iter_mut().zip(frame.rows()).enumerate() {
                 *value = torque[k] / deviation[k];
                 *product += frame.column(axis) * *value;
+                *squared += *value * *value;
             }
         }
     }
@@ -51,6 +53,7 @@ impl Target {
         for &link in wanted {
             self.links[link].torque.copy_from_slice(&other.links[link].torque);
             self.links[link].product = other.links[link].product;
+            self.links[link].squared = other.links[link].squared;
         }
         self.squared = other.squared;
     }
