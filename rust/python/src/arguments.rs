@@ -70,6 +70,16 @@ pub fn pushing(object: &Bound<'_, PyAny>) -> PyResult<bool> {
     flag("pushing", object)
 }
 
+/// The argument `gain`.
+pub fn gain(object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    number("gain", object)
+}
+
+/// The argument `dt`.
+pub fn time_step(object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    number("dt", object)
+}
+
 /// An argument of the wrong type.
 pub fn wrong(name: &str, wanted: &str, object: &Bound<'_, PyAny>, cause: PyErr) -> PyErr {
     refused(object.py(), cause, || format!("{name}: expected {wanted}, got {}", shown(object)))

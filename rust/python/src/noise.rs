@@ -5,6 +5,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::arguments::{gain, time_step};
 use crate::arrays::{scalar_or_vector, Vector};
 use crate::errors::{input, to_python};
 use crate::pickle::{plain_dict, reduced, Reduced};
@@ -154,8 +155,8 @@ impl PyNoiseModel {
         &self,
         #[pyo3(from_py_with = robot)] robot: Bound<'py, PyRobot>,
         q: &Bound<'py, PyAny>,
-        gain: f64,
-        dt: f64,
+        #[pyo3(from_py_with = gain)] gain: f64,
+        #[pyo3(from_py_with = time_step)] dt: f64,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let py = robot.py();
         let found = self.0.covariance(&robot.get().0, Vector::new("q", q)?.slice(), gain, dt);
@@ -182,8 +183,8 @@ impl PyNoiseModel {
         &self,
         #[pyo3(from_py_with = robot)] robot: Bound<'py, PyRobot>,
         q: &Bound<'py, PyAny>,
-        gain: f64,
-        dt: f64,
+        #[pyo3(from_py_with = gain)] gain: f64,
+        #[pyo3(from_py_with = time_step)] dt: f64,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let py = robot.py();
         let found = self.0.correlation_time(&robot.get().0, Vector::new("q", q)?.slice(), gain, dt);

@@ -13,7 +13,6 @@ use crate::arrays::Vector;
 use crate::description::{description as read_description, square};
 use crate::errors::{detached, input, to_python};
 use crate::returned::read_only;
-use crate::surface::PySurface;
 
 /// A robot: immutable, shareable between threads.
 #[pyclass(frozen, subclass, name = "Robot", module = "contactsense")]
@@ -151,34 +150,6 @@ impl PyRobot {
     #[getter]
     fn warnings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.0.warnings())
-    }
-
-    /// The surface of a link, in the link frame.
-    ///
-    /// Args:
-    ///     link: name of a link that has a surface.
-    ///
-    /// Returns:
-    ///     A `Surface`.
-    ///
-    /// Raises:
-    ///     InputError: the link is unknown or has no surface; the message lists those that have one.
-    fn surface(slf: &Bound<'_, Self>, link: &Bound<'_, PyAny>) -> PyResult<PySurface> {
-        let (py, this) = (slf.py(), slf.get());
-        let index = this.link(link)?;
-        if this.0[index].surface.is_none() {
-            let names: Vec<&str> =
-                this.0.touchable_links().iter().map(|i| this.0[*i].name.as_str()).collect();
-            return Err(input(
-                py,
-                format!(
-                    "link: '{}' has no surface; links that have one: {}",
-                    text("link", link)?,
-                    names.join(", ")
-                ),
-            ));
-        }
-        Ok(PySurface::new(slf.clone().unbind(), index))
     }
 
     fn __repr__(&self) -> String {

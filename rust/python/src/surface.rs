@@ -7,7 +7,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arguments::whole;
+use crate::arguments::{text, whole};
 use crate::arrays::rows;
 use crate::columns::Columns;
 use crate::errors::{detached, input, to_python};
@@ -114,13 +114,44 @@ pub struct SurfaceSamples {
 }
 
 impl PySurface {
-    pub fn new(robot: Py<PyRobot>, link: LinkIndex) -> Self {
+    fn new(robot: Py<PyRobot>, link: LinkIndex) -> Self {
         Self { robot, link, vertices: Once::default(), triangles: Once::default() }
     }
 
     fn core(&self, py: Python<'_>) -> PyResult<&Surface> {
         let surface = self.robot.get().0[self.link].surface.as_deref();
         surface.ok_or_else(|| to_python(py, Error::geometry("this link has no surface")))
+    }
+}
+
+#[pymethods]
+impl PyRobot {
+    /// The surface of a link, in the link frame.
+    ///
+    /// Args:
+    ///     link: name of a link that has a surface.
+    ///
+    /// Returns:
+    ///     A `Surface`.
+    ///
+    /// Raises:
+    ///     InputError: the link is unknown or has no surface; the message lists those that have one.
+    fn surface(slf: &Bound<'_, Self>, link: &Bound<'_, PyAny>) -> PyResult<PySurface> {
+        let (py, this) = (slf.py(), slf.get());
+        let index = this.link(link)?;
+        if this.0[index].surface.is_none() {
+            let names: Vec<&str> =
+                this.0.touchable_links().iter().map(|i| this.0[*i].name.as_str()).collect();
+            return Err(input(
+                py,
+                format!(
+                    "link: '{}' has no surface; links that have one: {}",
+                    text("link", link)?,
+                    names.join(", ")
+                ),
+            ));
+        }
+        Ok(PySurface::new(slf.clone().unbind(), index))
     }
 }
 

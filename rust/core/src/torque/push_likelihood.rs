@@ -352,6 +352,28 @@ mod tests {
         }
     }
 
+    /// All normals of a capsule pass its axis: but for rounding no torque shows a force along them.
+    #[test]
+    fn no_contact_explains_more_than_the_torques_there_are() {
+        let robot = Robot::example_arm();
+        let mut kinematics = Kinematics::new(&robot);
+        kinematics.set_configuration(&robot, &[8e-4, 6e-4, 0.6, -2.3, -0.4, -0.7, 0.5]);
+        let (mut frames, deviation) = (Frames::new(&robot, (0..7).collect()), [0.1; 7]);
+        frames.update(&robot, &kinematics, &deviation);
+        let mut target = Target::new(&frames);
+        target.set(&frames, &[22.6, 0.35, -1.2, -0.1, -0.2, 0.3, 0.5], &deviation);
+        let prior = ForcePrior::new(0.0, PRIOR, 0.05);
+        for (link, k) in (0..7).flat_map(|link| (0..200).map(move |k| (link, f64::from(k)))) {
+            let normal = Vector3::new((0.1 * k).cos(), (0.1 * k).sin(), 0.0);
+            let point = normal * 0.05 + Vector3::z() * (0.0015 * k);
+            let block = PlaceBlock::new(&[(point, normal, 1e-4); LANES]);
+            let found = prior.likelihood(&frames.links[link], target.on(link), &block);
+            let most = 0.5 * target.on(link).squared;
+            assert!(found.log.iter().flatten().all(|log| log.is_finite() && *log <= most), "{:?}", found.log);
+            assert!(found.force.iter().flatten().all(|force| (PRIOR[0]..=PRIOR[1]).contains(force)));
+        }
+    }
+
     #[test]
     fn a_step_leads_to_where_the_torques_are_likeliest() {
         let (middle, normal, contact) = piece();
