@@ -24,6 +24,7 @@ mod posterior;
 pub mod reaction;
 pub mod robot;
 mod sample;
+pub mod sampler;
 pub mod sensor;
 pub mod spatial;
 pub mod surface;

@@ -39,29 +39,7 @@ impl Births {
     /// # Errors
     /// [`Error::Input`] where none of the surface is exposed.
     pub fn new(robot: &Robot, wanted: &[usize], options: &FilterOptions) -> Result<Self> {
-        let surface = |index: usize| robot.links()[index].surface.as_ref();
-        let areas: Vec<f64> = wanted
-            .iter()
-            .map(|&index| surface(index).map_or(0.0, |surface| surface.exposed_area()))
-            .collect();
-        let area: f64 = areas.iter().sum();
-        let count = options.particles.max(LEAST);
-        let mut places = space(count)?;
-        let mut share = 0.0;
-        for (&index, own) in wanted.iter().zip(&areas) {
-            if area > 0.0 {
-                share += own / area;
-            }
-            // Rounded sums, so that the shares add up to all.
-            let wanted = ((share * count as f64).round() as usize).saturating_sub(places.len());
-            if let Some(surface) = surface(index) {
-                let seed = options.seed.wrapping_add(index as u64);
-                places.extend(surface.sample(wanted, seed).into_iter().map(|place| (index as u32, place)));
-            }
-        }
-        if places.is_empty() {
-            return Err(hidden(robot, wanted, options));
-        }
+        let (places, area) = exposed_places(robot, wanted, options)?;
         Ok(Births {
             spacing: (area / places.len() as f64).sqrt(),
             places,
@@ -76,6 +54,39 @@ impl Births {
     pub fn places(&self) -> usize {
         self.places.len()
     }
+}
+
+/// Places on the surface of links, by area: as many as particles, but at least so many; and the area (m^2).
+///
+/// # Errors
+/// [`Error::Input`] where none of the surface is exposed.
+pub(crate) fn exposed_places(
+    robot: &Robot,
+    wanted: &[usize],
+    options: &FilterOptions,
+) -> Result<(Vec<(u32, SurfacePoint)>, f64)> {
+    let surface = |index: usize| robot.links()[index].surface.as_ref();
+    let areas: Vec<f64> =
+        wanted.iter().map(|&index| surface(index).map_or(0.0, |surface| surface.exposed_area())).collect();
+    let area: f64 = areas.iter().sum();
+    let count = options.particles.max(LEAST);
+    let mut places = space(count)?;
+    let mut share = 0.0;
+    for (&index, own) in wanted.iter().zip(&areas) {
+        if area > 0.0 {
+            share += own / area;
+        }
+        // Rounded sums, so that the shares add up to all.
+        let wanted = ((share * count as f64).round() as usize).saturating_sub(places.len());
+        if let Some(surface) = surface(index) {
+            let seed = options.seed.wrapping_add(index as u64);
+            places.extend(surface.sample(wanted, seed).into_iter().map(|place| (index as u32, place)));
+        }
+    }
+    if places.is_empty() {
+        return Err(hidden(robot, wanted, options));
+    }
+    Ok((places, area))
 }
 
 /// The birth of particles at one instant.

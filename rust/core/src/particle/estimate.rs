@@ -93,7 +93,7 @@ pub struct FilterEstimate {
 
 impl FilterEstimate {
     /// No contact; space for so many links and modes.
-    pub(super) fn new(links: usize, modes: usize) -> Self {
+    pub(crate) fn new(links: usize, modes: usize) -> Self {
         FilterEstimate {
             estimate: ContactEstimate::new(links, modes),
             event: Event::None,
@@ -113,7 +113,7 @@ impl FilterEstimate {
     }
 
     /// No contact, after what happened.
-    pub(super) fn clear(&mut self, event: Event) {
+    pub(crate) fn clear(&mut self, event: Event) {
         self.estimate.clear();
         self.event = event;
         (self.explained, self.residual) = (true, 0.0);

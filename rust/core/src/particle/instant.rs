@@ -19,7 +19,7 @@ struct Extent {
 
 /// The poses and torques of one instant.
 #[derive(Debug, Clone)]
-pub(super) struct Instant {
+pub(crate) struct Instant {
     kinematics: Kinematics,
     pub noise: TorqueNoise,
     pub frames: Frames,

@@ -31,12 +31,17 @@ mod step_noise;
 mod weight;
 mod window;
 
+pub(crate) use birth::exposed_places;
 pub use columns::Columns;
 pub use estimate::{Event, FilterEstimate};
 pub use filter::ContactParticleFilter;
+pub(crate) use instant::Instant;
+pub(crate) use motion::signed;
 pub use options::{FilterOptions, Likelihood, Motion};
+pub(crate) use rejuvenation::tangent;
 pub use schedule::Schedule;
 pub use stages::Stages;
+pub(crate) use step_noise::NEW_POSE;
 
 pub use crate::posterior::{ContactEstimate, Mode};
 pub use crate::torque::ForceModel;

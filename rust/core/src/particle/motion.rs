@@ -136,7 +136,7 @@ impl Move {
 const TOUCHING: f64 = 1e-7;
 
 /// Distance and outward normal at the nearest point: a centre inside the link has a negative distance.
-pub(super) fn signed(near: &ClosestPoint, local: &Vector3<f64>) -> (f64, Vector3<f64>) {
+pub(crate) fn signed(near: &ClosestPoint, local: &Vector3<f64>) -> (f64, Vector3<f64>) {
     let apart = local - near.point;
     if near.distance < TOUCHING {
         return (near.distance, near.normal);

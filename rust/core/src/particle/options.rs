@@ -136,7 +136,7 @@ const LEAST_TORQUE: f64 = 1e-9;
 
 impl FilterOptions {
     /// Indices of the links to look on.
-    pub(super) fn check(&self, robot: &Robot) -> Result<Vec<usize>> {
+    pub(crate) fn check(&self, robot: &Robot) -> Result<Vec<usize>> {
         whole("particles", self.particles, 1..=MOST_PARTICLES)?;
         whole("threads", self.threads, 1..=MOST_THREADS)?;
         range("force_range", self.force_range)?;
@@ -154,7 +154,7 @@ impl FilterOptions {
     }
 
     /// What the torques err by.
-    pub(super) fn torque_noise(&self, robot: &Robot) -> Result<TorqueNoise> {
+    pub(crate) fn torque_noise(&self, robot: &Robot) -> Result<TorqueNoise> {
         match &self.noise {
             Some(noise) => noise.of(robot),
             None => {
@@ -176,7 +176,7 @@ impl FilterOptions {
     }
 
     /// Below these torques on every joint there is no contact.
-    pub(super) fn threshold(&self, robot: &Robot, noise: &TorqueNoise) -> Result<Vec<f64>> {
+    pub(crate) fn threshold(&self, robot: &Robot, noise: &TorqueNoise) -> Result<Vec<f64>> {
         match self.stated_threshold() {
             Some(threshold) => Self::per_joint(robot, "torque_threshold", &threshold),
             None => Ok(noise.threshold()),

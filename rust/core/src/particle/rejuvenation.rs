@@ -81,7 +81,7 @@ impl Rejuvenation {
 }
 
 /// A vector across `normal`.
-pub(super) fn tangent(normal: &Vector3<f64>, along: f64, beside: f64) -> Vector3<f64> {
+pub(crate) fn tangent(normal: &Vector3<f64>, along: f64, beside: f64) -> Vector3<f64> {
     let first = across(normal);
     first * along + normal.cross(&first) * beside
 }

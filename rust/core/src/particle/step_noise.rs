@@ -4,7 +4,7 @@ use super::options::{FilterOptions, Likelihood};
 use super::schedule::Schedule;
 
 /// A motion of the robot that makes a measurement a new one, and the model's noise its full size [m].
-pub(super) const NEW_POSE: f64 = 0.005;
+pub(crate) const NEW_POSE: f64 = 0.005;
 /// Adaptive noise of a force, relative, and of a distance [m].
 const FORCE_NOISE: f64 = 0.04;
 const DISTANCE_NOISE: f64 = 1e-4;

@@ -9,6 +9,7 @@ mod mode;
 mod moments;
 pub(crate) mod parallel;
 pub(crate) mod resampling;
+pub(crate) mod tempering;
 
 pub(crate) use clusters::{Clusters, MOST_MODES};
 pub(crate) use contact_sample::{ContactSample, ContactSamples};

@@ -17,6 +17,7 @@ pub(crate) use fit::{BestForce, NormalFit};
 pub(crate) use force_model::directions;
 pub use force_model::ForceModel;
 pub(crate) use frames::{Frame, Frames, SensorMount, WRENCH};
+pub(crate) use link_target::LinkTarget;
 pub use noise_model::NoiseModel;
 pub(crate) use noise_model::{largest, TorqueNoise, LEVEL, SENSOR_RELATIVE};
 pub(crate) use place_step::PlaceStep;

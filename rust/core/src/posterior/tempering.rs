@@ -1,0 +1,368 @@
+//! Tempered sequential Monte Carlo (Del Moral, Doucet and Jasra 2006; algorithm C3): weighted samples of one distribution become
+//! samples of another over steps that leave enough of them effective; after each they are drawn anew and all moved by Metropolis moves.
+//! To move copies alone would not leave the distribution as it is: where they are depends on the weights.
+//!
+//! What is sampled is a [`Path`]; how, the functions here.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::evidence::Evidence;
+use super::memory::{filled, space};
+use super::parallel::{Course, Pieces};
+use super::resampling::{effective_share, normalise, systematic};
+use crate::error::Result;
+use crate::math::bisection::last_where;
+use crate::math::random::Stream;
+
+/// Numbers of a stream that belong to one sample: those of its moves.
+const DRAWS: u64 = 64;
+/// The number of a move that decides whether it is accepted; those below it are the proposal's.
+const DECISION: u64 = DRAWS - 1;
+
+/// Logarithms of densities at a sample, not normalised.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Logs {
+    /// At the start of the way.
+    pub start: f64,
+    /// What the whole way adds.
+    pub added: f64,
+}
+
+impl Logs {
+    /// At a share of the way.
+    fn at(&self, share: f64) -> f64 {
+        let added = share * self.added;
+        // Where nothing is added a density of zero counts for nothing.
+        self.start + if share == 0.0 { 0.0 } else { added }
+    }
+}
+
+/// The way from one distribution to another.
+pub(crate) trait Path: Sync {
+    /// A sample that knows its densities.
+    type Sample: Clone + Send + Sync;
+
+    /// The densities at a sample.
+    fn logs(&self, sample: &Self::Sample) -> Logs;
+
+    /// Another sample near one, as likely to be proposed from there as the other way round; none where there is none.
+    /// It may use the random numbers 0 to 62 of the stream from `first` on.
+    fn propose(&self, sample: &Self::Sample, random: &Stream, first: u64) -> Option<Self::Sample>;
+}
+
+/// How samples are drawn anew.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Tempering {
+    /// A step of the way leaves this share of the samples effective, and samples are drawn anew below it.
+    pub effective_share: f64,
+    /// Moves of each sample after they are drawn anew.
+    pub moves: usize,
+    /// Steps of one way at most: the last one goes to the end whatever it leaves.
+    pub most_steps: usize,
+}
+
+/// What a way showed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Travelled {
+    /// Logarithm of the normalising constant of the end over that of the start.
+    pub log_evidence: f64,
+    /// Effective samples in the end, before they are drawn anew.
+    pub effective: f64,
+    pub steps: usize,
+    /// Share of the moves that were accepted; zero where none was tried.
+    pub accepted: f64,
+}
+
+/// Weighted samples.
+#[derive(Debug, Clone)]
+pub(crate) struct Samples<S> {
+    pub all: Vec<S>,
+    /// They sum to one.
+    pub weights: Vec<f64>,
+    log_weights: Vec<f64>,
+    evidence: Evidence,
+    parents: Vec<u32>,
+    spare: Vec<S>,
+}
+
+struct Part<'a, S>(&'a mut [S]);
+
+impl<S: Send> Pieces for Part<'_, S> {
+    fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    fn split(self, middle: usize) -> (Self, Self) {
+        let (left, right) = self.0.split_at_mut(middle);
+        (Part(left), Part(right))
+    }
+}
+
+impl<S: Clone + Send + Sync> Samples<S> {
+    /// So many, all alike.
+    ///
+    /// # Errors
+    /// [`Error::Memory`](crate::Error::Memory) where there is no space for so many.
+    pub fn new(count: usize, first: S) -> Result<Self> {
+        let copies = |first: &S| -> Result<Vec<S>> {
+            let mut all = space(count)?;
+            all.resize(count, first.clone());
+            Ok(all)
+        };
+        Ok(Samples {
+            all: copies(&first)?,
+            spare: copies(&first)?,
+            weights: filled(1.0 / count as f64, count)?,
+            log_weights: filled(0.0, count)?,
+            evidence: Evidence::of(count),
+            parents: filled(0, count)?,
+        })
+    }
+
+    /// As many with equal weights as were set in `all`.
+    pub fn restart(&mut self) {
+        let count = self.all.len();
+        self.log_weights.fill(0.0);
+        self.weights.fill(1.0 / count as f64);
+        self.evidence = Evidence::of(count);
+    }
+
+    /// Takes the samples along a way. A density that is no number is one of zero; where all are zero the samples stay.
+    pub fn travel<P: Path<Sample = S>>(
+        &mut self,
+        path: &P,
+        tempering: Tempering,
+        random: Stream,
+        course: Course<'_>,
+    ) -> Travelled {
+        let count = self.all.len();
+        let mut travelled = Travelled::default();
+        let (mut share, mut tried, mut accepted) = (0.0, 0_usize, 0_usize);
+        while share < 1.0 {
+            travelled.steps += 1;
+            let last = travelled.steps >= tempering.most_steps;
+            let next = if last { 1.0 } else { self.next_share(path, share, tempering.effective_share) };
+            for (log, sample) in self.log_weights.iter_mut().zip(&self.all) {
+                let logs = path.logs(sample);
+                *log += logs.at(next) - logs.at(share);
+            }
+            let weighed = normalise(&mut self.log_weights, &mut self.weights);
+            travelled.log_evidence += self.evidence.take_in(&weighed);
+            travelled.effective = weighed.effective;
+            share = next;
+            if weighed.effective >= tempering.effective_share * count as f64 && share >= 1.0 {
+                break;
+            }
+            let stream = random.fork(travelled.steps as u64);
+            accepted += self.draw_anew(path, share, tempering.moves, stream, course);
+            tried += count * tempering.moves;
+        }
+        travelled.accepted = if tried > 0 { accepted as f64 / tried as f64 } else { 0.0 };
+        travelled
+    }
+
+    /// How far the way can be gone at once.
+    fn next_share<P: Path<Sample = S>>(&self, path: &P, share: f64, effective: f64) -> f64 {
+        let leaves_enough = |next: f64| {
+            effective_share(self.all.len(), 1, |k| {
+                let logs = path.logs(&self.all[k]);
+                self.log_weights[k] + logs.at(next) - logs.at(share)
+            }) >= effective
+        };
+        if leaves_enough(1.0) {
+            return 1.0;
+        }
+        last_where([share, 1.0], leaves_enough)
+    }
+
+    /// Draws samples in proportion to their weights and moves them; how many moves were accepted.
+    fn draw_anew<P: Path<Sample = S>>(
+        &mut self,
+        path: &P,
+        share: f64,
+        moves: usize,
+        random: Stream,
+        course: Course<'_>,
+    ) -> usize {
+        systematic(&self.weights, random.uniform(0), &mut self.parents);
+        for (sample, parent) in self.spare.iter_mut().zip(&self.parents) {
+            sample.clone_from(&self.all[*parent as usize]);
+        }
+        std::mem::swap(&mut self.all, &mut self.spare);
+        self.restart();
+        let accepted = AtomicUsize::new(0);
+        let stream = random.fork(1);
+        let work = |start: usize, part: Part<'_, S>| {
+            for (k, sample) in part.0.iter_mut().enumerate() {
+                for turn in 0..moves {
+                    let first = ((start + k) * moves + turn) as u64 * DRAWS;
+                    let Some(other) = path.propose(sample, &stream, first) else { continue };
+                    let change = path.logs(&other).at(share) - path.logs(sample).at(share);
+                    // False also where a density is no number.
+                    if stream.uniform(first + DECISION).ln() < change {
+                        *sample = other;
+                        accepted.fetch_add(1, Ordering::Relaxed);
+                    }
+                }
+            }
+        };
+        course.for_each(Part(&mut self.all), 0, &work);
+        accepted.into_inner()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::AtomicBool;
+
+    use super::*;
+
+    const TEMPERING: Tempering = Tempering { effective_share: 0.5, moves: 4, most_steps: 100 };
+
+    /// From a Gaussian prior to its product with a Gaussian likelihood, in two dimensions.
+    struct Gaussian {
+        prior: f64,
+        measured: [f64; 2],
+        noise: [f64; 2],
+    }
+
+    impl Path for Gaussian {
+        type Sample = [f64; 2];
+
+        fn logs(&self, sample: &[f64; 2]) -> Logs {
+            let squared = |k: usize, at: f64, deviation: f64| ((sample[k] - at) / deviation).powi(2);
+            let start = -0.5 * (0..2).map(|k| squared(k, 0.0, self.prior)).sum::<f64>();
+            let added = -0.5 * (0..2).map(|k| squared(k, self.measured[k], self.noise[k])).sum::<f64>();
+            Logs { start, added }
+        }
+
+        fn propose(&self, sample: &[f64; 2], random: &Stream, first: u64) -> Option<[f64; 2]> {
+            let steps = random.normals(first);
+            Some(std::array::from_fn(|k| sample[k] + 1.5 * self.noise[k] * steps[k]))
+        }
+    }
+
+    fn from_prior(count: usize, deviation: f64, seed: u64) -> Samples<[f64; 2]> {
+        let mut samples = Samples::new(count, [0.0; 2]).expect("memory");
+        let random = Stream::new(seed);
+        for (k, sample) in samples.all.iter_mut().enumerate() {
+            *sample = random.normals(2 * k as u64).map(|x| deviation * x);
+        }
+        samples
+    }
+
+    fn course(stop: &AtomicBool) -> Course<'_> {
+        Course { threads: 1, stop }
+    }
+
+    #[test]
+    fn mean_covariance_and_normalising_constant_are_those_of_a_gaussian() {
+        let path = Gaussian { prior: 3.0, measured: [4.0, -2.0], noise: [0.1, 0.02] };
+        let (count, runs, stop) = (4000, 8, AtomicBool::new(false));
+        let mut errors = [[0.0; 3]; 2];
+        let mut evidence = 0.0;
+        for seed in 0..runs {
+            let mut samples = from_prior(count, path.prior, seed);
+            let found = samples.travel(&path, TEMPERING, Stream::new(100 + seed), course(&stop));
+            assert!(found.steps > 3 && found.accepted > 0.2, "{found:?}");
+            evidence += found.log_evidence / runs as f64;
+            for k in 0..2 {
+                let (prior, noise) = (path.prior.powi(2), path.noise[k].powi(2));
+                let variance = prior * noise / (prior + noise);
+                let mean = path.measured[k] * variance / noise;
+                let of = |f: &dyn Fn(f64) -> f64| -> f64 {
+                    samples.all.iter().zip(&samples.weights).map(|(x, w)| w * f(x[k])).sum()
+                };
+                let own = of(&|x| x);
+                errors[k][0] += (own - mean) / variance.sqrt() / runs as f64;
+                errors[k][1] += (of(&|x| (x - own).powi(2)) / variance - 1.0) / runs as f64;
+                errors[k][2] += of(&|x| ((x - own) / variance.sqrt()).powi(3)) / runs as f64;
+            }
+        }
+        // Monte Carlo errors of 32,000 samples that are not quite independent.
+        assert!(
+            errors
+                .iter()
+                .all(|[mean, variance, skew]| mean.abs() < 0.03 && variance.abs() < 0.06 && skew.abs() < 0.1),
+            "{errors:?}"
+        );
+        let exact: f64 = (0..2)
+            .map(|k| {
+                let sum = path.prior.powi(2) + path.noise[k].powi(2);
+                0.5 * (path.noise[k].powi(2) / sum).ln() - 0.5 * path.measured[k].powi(2) / sum
+            })
+            .sum();
+        assert!((evidence - exact).abs() < 0.1, "{evidence} {exact}");
+    }
+
+    #[test]
+    fn densities_of_zero_and_none_are_left_behind() {
+        struct Half;
+        impl Path for Half {
+            type Sample = f64;
+            fn logs(&self, sample: &f64) -> Logs {
+                let added = if *sample > 0.5 {
+                    f64::NEG_INFINITY
+                } else if *sample < -0.5 {
+                    f64::NAN
+                } else {
+                    0.0
+                };
+                Logs { start: 0.0, added }
+            }
+            fn propose(&self, sample: &f64, random: &Stream, first: u64) -> Option<f64> {
+                (random.uniform(first) < 0.9).then(|| sample + 0.1 * random.normals(first + 1)[0])
+            }
+        }
+        let stop = AtomicBool::new(false);
+        let mut samples = Samples::new(1000, 0.0).expect("memory");
+        let random = Stream::new(5);
+        samples.all.iter_mut().enumerate().for_each(|(k, x)| *x = 2.0 * random.uniform(k as u64) - 1.0);
+        let found = samples.travel(&Half, TEMPERING, Stream::new(1), course(&stop));
+        let kept = samples.all.iter().zip(&samples.weights).filter(|(_, weight)| **weight > 0.0);
+        assert!(kept.map(|(x, _)| x).all(|x| x.abs() <= 0.5));
+        assert!((found.log_evidence - 0.5f64.ln()).abs() < 0.1, "{found:?}");
+    }
+
+    #[test]
+    fn one_sample_stays_one_and_none_that_fits_leaves_them() {
+        let path = Gaussian { prior: 1.0, measured: [0.5, 0.5], noise: [0.1, 0.1] };
+        let stop = AtomicBool::new(false);
+        let mut one = from_prior(1, 1.0, 3);
+        let found = one.travel(&path, TEMPERING, Stream::new(1), course(&stop));
+        assert!(one.weights == [1.0] && found.log_evidence.is_finite() && found.effective == 1.0);
+        struct Nowhere;
+        impl Path for Nowhere {
+            type Sample = [f64; 2];
+            fn logs(&self, _: &[f64; 2]) -> Logs {
+                Logs { start: 0.0, added: f64::NEG_INFINITY }
+            }
+            fn propose(&self, _: &[f64; 2], _: &Stream, _: u64) -> Option<[f64; 2]> {
+                None
+            }
+        }
+        let mut some = from_prior(50, 1.0, 3);
+        let found = some.travel(&Nowhere, TEMPERING, Stream::new(1), course(&stop));
+        assert_eq!(found.log_evidence, f64::NEG_INFINITY);
+        assert!(some.weights.iter().all(|weight| (weight - 0.02).abs() < 1e-12));
+    }
+
+    #[test]
+    #[cfg(feature = "parallel")]
+    fn answers_are_the_same_on_any_number_of_threads() {
+        use crate::posterior::parallel::Pool;
+        let path = Gaussian { prior: 3.0, measured: [4.0, -2.0], noise: [0.1, 0.02] };
+        let stop = AtomicBool::new(false);
+        let run = |threads: usize| {
+            let pool = Pool::new(threads).expect("threads");
+            let mut samples = from_prior(3000, path.prior, 1);
+            let mut found = Travelled::default();
+            pool.install(|| {
+                found = samples.travel(&path, TEMPERING, Stream::new(9), Course { threads, stop: &stop })
+            });
+            (samples.all, samples.weights, found)
+        };
+        let (one, three) = (run(1), run(3));
+        assert!(one == three);
+    }
+}

@@ -1,0 +1,16 @@
+//! Contacts with an obstacle that stays where it is, sampled from all that was measured of them (algorithm C3).
+//!
+//! A hypothesis is the link, the place on it where it touched first, and the radius of the obstacle: these fix the obstacle's centre
+//! in the world for good, and with it the place and the depth of the contact at every later pose. Its force and stiffness, which
+//! the torques are linear in, are integrated out (`sums.rs`). The kernel that takes hypotheses from one measurement to the next
+//! is [`tempering`](crate::posterior::tempering), the model it is given is in `path.rs`.
+
+mod hypothesis;
+mod measurements;
+mod options;
+mod path;
+mod static_obstacle;
+mod sums;
+
+pub use options::SamplerOptions;
+pub use static_obstacle::StaticObstacleSampler;

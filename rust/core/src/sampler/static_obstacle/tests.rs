@@ -1,0 +1,136 @@
+use nalgebra::Vector3;
+
+use super::*;
+use crate::torque::ForceModel;
+
+const RADIUS: f64 = 0.05;
+const STIFFNESS: f64 = 1000.0;
+const FORCE: f64 = 25.0;
+const POSE: [f64; 7] = [0.3, 0.8, -0.4, 0.9, 0.5, 0.7, 0.2];
+
+/// Small motions of the example arm against a ball that stays, and the torques without errors.
+struct Scene {
+    robot: Arc<Robot>,
+    link: usize,
+    centre: Vector3<f64>,
+}
+
+impl Scene {
+    fn new(link: usize, place: f64) -> Self {
+        let robot = Arc::new(Robot::example_arm());
+        let surface = robot.links()[link].surface.clone().expect("a surface");
+        let points = surface.sample(64, 3);
+        let at = points[(64.0 * place) as usize];
+        let pose = robot.link_pose(&POSE, crate::robot::LinkIndex::new(link)).expect("a pose");
+        Scene { centre: pose.transform_point(&(at.point + at.normal * RADIUS)), link, robot }
+    }
+
+    /// The torque at a pose and where the contact is, where there is one of some force.
+    fn at(&self, q: &[f64]) -> Option<(Vec<f64>, Vector3<f64>)> {
+        let link = crate::robot::LinkIndex::new(self.link);
+        let pose = self.robot.link_pose(q, link).expect("a pose");
+        let surface = self.robot.links()[self.link].surface.as_ref().expect("a surface");
+        let near = surface.closest_point(&pose.inverse_transform_point(&self.centre));
+        let force = FORCE + STIFFNESS * (RADIUS - near.distance);
+        // Nor where the motion would take the ball's centre into the link.
+        if force < 5.0 || near.distance < 0.5 * RADIUS {
+            return None;
+        }
+        let point = pose.transform_point(&near.point);
+        let push = (point - self.centre) * (force / near.distance);
+        let jacobian = self.robot.jacobian(q, link, Some(point.into())).expect("a Jacobian");
+        Some(((jacobian.rows(0, 3).transpose() * push).as_slice().to_vec(), point))
+    }
+
+    fn pose(&self, tick: usize) -> Vec<f64> {
+        let turn = |j: usize| 0.02 * ((1.0 + 0.37 * j as f64) * tick as f64).sin();
+        POSE.iter().enumerate().map(|(j, q)| q + if tick == 0 { 0.0 } else { turn(j) }).collect()
+    }
+}
+
+fn sampler(scene: &Scene, threads: usize) -> StaticObstacleSampler {
+    let options = SamplerOptions {
+        hypotheses: 3000,
+        force_model: ForceModel::FrictionCone(0.0),
+        threads,
+        ..SamplerOptions::default()
+    };
+    StaticObstacleSampler::new(scene.robot.clone(), &options).expect("valid options")
+}
+
+#[test]
+fn an_obstacle_that_stays_is_found_on_outer_links() {
+    for (link, place) in [(3, 0.3), (4, 0.6), (5, 0.2), (6, 0.8)] {
+        let scene = Scene::new(link, place);
+        let mut sampler = sampler(&scene, 1);
+        let mut truth = Vector3::zeros();
+        for tick in 0..30 {
+            let q = scene.pose(tick);
+            let Some((torque, point)) = scene.at(&q) else { continue };
+            truth = point;
+            sampler.update(&q, &torque).expect("valid input");
+        }
+        let found = sampler.estimate();
+        let contact = found.estimate.contact.expect("a contact");
+        let error = (contact.point - truth).norm();
+        assert!(contact.link.get() == link && error < 0.01, "link {link}: {contact:?} {error}");
+        assert!(found.explained && sampler.total_log_evidence() > 0.0, "{found:?}");
+        assert!((sampler.weights().iter().sum::<f64>() - 1.0).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn what_ends_is_forgotten_and_bad_input_changes_nothing() {
+    let scene = Scene::new(5, 0.2);
+    let mut sampler = sampler(&scene, 1);
+    let q = scene.pose(0);
+    let (torque, _) = scene.at(&q).expect("a contact");
+    assert_eq!(sampler.update(&q, &torque).expect("valid").event, Event::Started);
+    let kept = sampler.estimate().estimate.contact.expect("a contact").point;
+    assert!(sampler.update(&q[1..], &torque).is_err() && sampler.update(&q, &[f64::NAN; 7]).is_err());
+    assert_eq!(sampler.estimate().estimate.contact.expect("a contact").point, kept);
+    assert_eq!(sampler.update(&q, &[0.0; 7]).expect("valid").event, Event::Lost);
+    assert!(sampler.estimate().estimate.contact.is_none());
+    assert_eq!(sampler.update(&q, &torque).expect("valid").event, Event::Started);
+}
+
+#[test]
+#[cfg(feature = "parallel")]
+fn answers_are_the_same_on_any_number_of_threads() {
+    let scene = Scene::new(5, 0.2);
+    let run = |threads| {
+        let mut sampler = sampler(&scene, threads);
+        for tick in 0..6 {
+            let q = scene.pose(tick);
+            let Some((torque, _)) = scene.at(&q) else { continue };
+            sampler.update(&q, &torque).expect("valid input");
+        }
+        (sampler.weights().to_vec(), sampler.estimate().estimate.contact.expect("a contact").point)
+    };
+    assert!(run(1) == run(2));
+}
+
+#[test]
+fn a_window_that_is_full_forgets_the_oldest() {
+    let scene = Scene::new(5, 0.2);
+    let options = SamplerOptions {
+        hypotheses: 300,
+        window: 5,
+        force_model: ForceModel::FrictionCone(0.0),
+        ..SamplerOptions::default()
+    };
+    let mut sampler = StaticObstacleSampler::new(scene.robot.clone(), &options).expect("valid options");
+    for tick in 0..20 {
+        let q = scene.pose(tick);
+        let Some((torque, _)) = scene.at(&q) else { continue };
+        sampler.update(&q, &torque).expect("valid input");
+        assert!(sampler.measurements.len() <= 5);
+    }
+    // What was added and taken away is what is there.
+    let path = path(&sampler.robot, &sampler.measurements, &sampler.options);
+    for hypothesis in sampler.samples.all.iter().take(50) {
+        let anew = path.make(hypothesis.link, hypothesis.place, hypothesis.log_radius).expect("a surface");
+        let error = (anew.marginal.log - hypothesis.marginal.log).abs();
+        assert!(error < 1e-6 * (1.0 + anew.marginal.log.abs()), "{error} {}", anew.marginal.log);
+    }
+}
