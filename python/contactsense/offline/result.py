@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
@@ -68,7 +68,7 @@ class ReplayedContact:
     region_radius: float
     peak_force: float
     force: NDArray[np.float64]
-    kind: str = ""
+    kind: str = field(default_factory=str)  # as a plain default it would be an attribute of the class
     clamped: float = math.nan
     transient: float = math.nan
     sustained: float = math.nan
@@ -79,7 +79,7 @@ class ReplayedContact:
 
         Those of the class are left out if contacts are not classified.
         """
-        names = [field.name for field in fields(self)]
+        names = [each.name for each in fields(self)]
         if not self.kind:
             names = names[: names.index("kind")]
         return {name: _plain(getattr(self, name)) for name in names}
