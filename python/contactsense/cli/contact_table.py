@@ -29,12 +29,15 @@ _NOTE = (
 _CLASS_COLUMNS = (
     ("id", True),
     ("from, to\n[s]", False),
-    ("link", False),
     ("kind", False),
     ("clamped\n[%]", True),
     ("transient\n[%]", True),
     ("sustained\n[%]", True),
     ("intended\n[%]", True),
+)
+_CLASS_NOTE = (
+    "kind: the likeliest of clamped, transient and sustained, whose probabilities sum to 100 %. "
+    "intended: probability that a person touches the robot on purpose."
 )
 
 
@@ -54,6 +57,7 @@ def contact_table(name: str, result: Replay) -> Table:
 def class_table(result: Replay) -> Table:
     """What kind each contact is, with probabilities."""
     table = plain_table("Classes")
+    table.caption, table.caption_justify = _CLASS_NOTE, "left"
     _fill(table, _CLASS_COLUMNS, map(_class_cells, result.contacts))
     return table
 
@@ -83,7 +87,7 @@ def _cells(contact: ReplayedContact) -> list[str]:
 def _class_cells(contact: ReplayedContact) -> list[str]:
     probabilities = (contact.clamped, contact.transient, contact.sustained, contact.intended)
     percent = [number_text(100.0 * each, 0) for each in probabilities]
-    return [str(contact.id), _times(contact), contact.link, contact.kind, *percent]
+    return [str(contact.id), _times(contact), contact.kind, *percent]
 
 
 def _times(contact: ReplayedContact) -> str:
