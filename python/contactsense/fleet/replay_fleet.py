@@ -10,7 +10,6 @@ from typing import Any, Literal, get_args
 from .. import _core
 from .._extras import require
 from ..errors import InputError
-from ..offline.monitor_of import classifier_of
 from .result import FleetReplay
 
 Engine = Literal["local", "ray"]
@@ -112,5 +111,7 @@ def _check(
         raise InputError(f"workers: must be at least 1, not {workers}")
     if address is not None and engine != "ray":
         raise InputError(f"address: is that of a Ray cluster; the engine is {engine!r}")
+    from ..offline.monitor_of import classifier_of  # a module that few programs need
+
     # What is wrong for one log is wrong for all.
     classifier_of(_core.ContactMonitor(robot, dt=0.001, **(monitor or {})), classifier)
