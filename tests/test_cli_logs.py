@@ -93,8 +93,8 @@ def test_ctrl_c_keeps_what_is_done(
     module = import_module("contactsense.cli.replay")
     original = module.replay
 
-    def stopped(log: cs.Log, monitor: cs.ContactMonitor, on_progress: object) -> cs.Replay:
-        del on_progress
+    def stopped(log: cs.Log, monitor: cs.ContactMonitor, classifier: None, on_progress: object) -> cs.Replay:
+        del classifier, on_progress
 
         def stop(done: int, rows: int) -> None:
             raise KeyboardInterrupt

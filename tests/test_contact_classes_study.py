@@ -6,12 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 import contactsense as cs
+from contactsense_studies.contact_classes.arms import JUDGED
 from contactsense_studies.contact_classes.fit import fit
 from contactsense_studies.contact_classes.judge import Answer, Judged
+from contactsense_studies.contact_classes.options import Options
+from contactsense_studies.contact_classes.report import print_study
 from contactsense_studies.contact_classes.score import score
-from contactsense_studies.contact_classes.study import contacts_of
+from contactsense_studies.contact_classes.study import Study, contacts_of
 from contactsense_studies.contact_classes.truth import Truth
 
 
@@ -74,6 +78,18 @@ def test_a_figure_counts_what_is_right() -> None:
     assert found.right_of_three == found.right_intention == pytest.approx(3 / 4)
     assert found.confusion == ((1, 1, 0), (0, 1, 0), (0, 0, 1))
     assert found.intention_error == pytest.approx((0.1 + 3 * abs(0.9 - 2 / 3)) / 4)
+
+
+def test_the_tables_fit_a_terminal() -> None:
+    answer = Answer(None, (0.8, 0.1, 0.1), 0.1, ())
+    truth = Truth("held", "clamped", False, 0.6, 0.9, 20.0)
+    judged = [Judged(arm, truth, (answer,)) for arm in JUDGED for _ in range(1000)]
+    console = Console(width=80, record=True)
+    print_study(Study(Options(), JUDGED, {}, judged), console)
+    printed = console.export_text()
+    assert "…" not in printed
+    for header in ("missed", "either", "of three", "intended", "1000", "100.0"):
+        assert header in printed
 
 
 def test_the_weights_of_a_softmax_regression_are_found() -> None:

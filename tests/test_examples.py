@@ -30,6 +30,11 @@ FINDINGS = {
         r"push on iiwa_link_5.* ms, iiwa_link_5 .*\n.*\n"
         r"push on iiwa_link_7.* ms, iiwa_link_7 .*, located: True\n  4\d N;.* error [01]\."
     ),
+    "classify_and_react.py": (
+        r"^wall: clamped \d\d%, intended \d\d?%; retract; [34]\d N at most, \d N at the end\n"
+        r"ball: transient \d\d%, intended \d\d?%; stop; 1\d N at most, 0 N at the end\n"
+        r"person: sustained \d\d%, intended \d\d%; give way; 30 N at most, 0 N at the end\n$"
+    ),
     "control_loop.py": r"(like: .* 1 to \d\d ms, 0 false contacts\n  onset [23]\d ms (.*\n){2}(fri-|$)){2}",
     "explore_a_touch.py": r"_4, 1\d\.\d N\nphysics: 201 samples(.|\n)* 0\.[0-3]\d Nm(.|\n)*within \d mm",
     "first_contact.py": r"at 1\.50\d s\niiwa_link_6, point \[0\.52 0\.01 0\.6 *\] .* \d\.\d cm, (39|4[01]) N",

@@ -113,6 +113,27 @@ def test_logs_that_are_there_are_not_replayed_again(logs: list[Path], tmp_path: 
     assert replayed(monitor={**MONITOR, "calibration": calibration}) == ["1.csv"]
 
 
+def test_classes_are_those_of_replay(logs: list[Path], tmp_path: Path) -> None:
+    log, folder = logs[1], tmp_path / "found"
+    names = ("clamped", "transient", "sustained", "intended")
+    for classifier in ({}, {"intended_prior": 0.9}):
+        replayed = cs.replay_fleet([log], arm(), folder, monitor=MONITOR, classifier=classifier).replayed
+        assert list(replayed) == [log]
+        monitor = cs.ContactMonitor(arm(), dt=DT, **MONITOR)
+        classes = cs.ContactClassifier(arm(), dt=DT, **classifier)
+        result = cs.replay(cs.read_log(log, arm()), monitor, classifier=classes)
+        found = table(folder, "contacts")
+        for name in ("kind", *names):
+            assert found[name].to_pylist() == [getattr(contact, name) for contact in result.contacts]
+        ticks = table(folder, "contact_ticks")
+        for name in names:
+            np.testing.assert_array_equal(ticks[name].to_numpy(), result.contact_ticks[name])
+    again = cs.replay_fleet([log], arm(), folder, monitor=MONITOR, classifier={"intended_prior": 0.9})
+    assert list(again.unchanged) == [log]
+    assert list(cs.replay_fleet([log], arm(), folder, monitor=MONITOR).replayed) == [log]
+    assert not {"kind", *names} & {*table(folder, "contacts").column_names}
+
+
 def test_robots_are_told_apart_whatever_their_names(logs: list[Path], tmp_path: Path) -> None:
     names = ["7", "cell 3/arm", "../b", "größe=1"]
     for name in names:
@@ -208,13 +229,11 @@ def command(logs: list[Path], folder: Path, *more: str) -> list[str]:
 
 
 @needs_ray
-def test_both_engines_give_the_same_data_set(logs: list[Path], tmp_path: Path) -> None:
+@pytest.mark.parametrize("more", [[], ["--classes"]])
+def test_both_engines_give_the_same_data_set(more: list[str], logs: list[Path], tmp_path: Path) -> None:
     for engine in ("local", "ray"):
-        subprocess.run(
-            [sys.executable, "-m", "contactsense.cli", *command(logs, tmp_path / engine, "--engine", engine)],
-            check=True,
-            timeout=300,
-        )
+        arguments = command(logs, tmp_path / engine, "--engine", engine, *more)
+        subprocess.run([sys.executable, "-m", "contactsense.cli", *arguments], check=True, timeout=300)
     assert content(tmp_path / "local") == content(tmp_path / "ray")
 
 
@@ -290,6 +309,7 @@ def test_a_damaged_log_gives_its_exit_code(logs: list[Path], tmp_path: Path) -> 
         ({"workers": 0}, "workers: must be at least 1"),
         ({"address": "auto"}, "address: "),
         ({"monitor": {"torque_threshold": -1.0}}, "torque_threshold"),
+        ({"classifier": {"prior": [0.5, 0.5]}}, "prior: expected 3"),
         ({"robot": 3}, "robot: expected"),
     ],
 )

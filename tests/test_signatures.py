@@ -30,8 +30,9 @@ SIGNATURES = {
     "calibrate": "robot, log, *, false_alarms_per_hour=1.0, payload_link=None",
     "read_log": "path, robot, *, columns=None, topics=None, units=None, torque_constants=None, "
     "external=False, rate=None, sensors=()",
-    "replay": "log, monitor, *, on_progress=None",
-    "replay_fleet": "logs, robot, folder, *, name=None, reading=None, monitor=None, ticks=False, "
+    "replay": "log, monitor, *, classifier=None, on_progress=None",
+    "replay_fleet": "logs, robot, folder, *, name=None, reading=None, monitor=None, "
+    "classifier=None, ticks=False, "
     "engine='local', workers=None, address=None, on_progress=None",
     "view": "source, *, host='127.0.0.1', port=8080, token=None",
     "View.show": "q, report, particles=None",

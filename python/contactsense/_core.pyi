@@ -1765,17 +1765,23 @@ class ContactMonitor:
             InputError: Names the argument; the state is then unchanged but for the time that passed.
         """
     def _update_rows(
-        self, arrays: list[NDArray[np.float64]], wrenches: NDArray[np.float64] | None, external: bool
+        self,
+        arrays: list[NDArray[np.float64]],
+        wrenches: NDArray[np.float64] | None,
+        external: bool,
+        classifier: ContactClassifier | None,
     ) -> tuple[
         NDArray[np.float64],
         NDArray[np.float64],
         NDArray[np.float64],
         NDArray[np.float64],
         list[tuple[int, tuple[Contact, ...]]],
+        list[tuple[int, int, int | None, ContactClass]],
     ]:
         """`update` of rows one after the other, or `update_external` where `external` says so.
 
-        All arrays are flat; a step of NaN is that of the monitor, `wrenches` has one row for each sensor of each row.
+        All arrays are flat; a step of NaN is that of the monitor, `wrenches` has one row for each sensor of each row. Without a
+        `classifier` there are no classes.
         """
     def update_external(
         self,
@@ -2356,6 +2362,9 @@ class ContactClass:
     @property
     def duration(self) -> float:
         """From its first tick to its last so far [s]."""
+    @property
+    def kind(self) -> Literal["clamped", "transient", "sustained"]:
+        """The likeliest of "clamped", "transient" and "sustained"."""
     @property
     def clamped(self) -> float:
         """Probability that it is held between the robot and something fixed."""

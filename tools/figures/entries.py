@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from . import demos, identifiability, long_studies, noisy_contacts, real_arm, studies
+from . import contact_classes, demos, identifiability, long_studies, noisy_contacts, real_arm, studies
 from .entry import Figure
 
 PYTHON = ("python", "-m")
@@ -149,6 +149,26 @@ FIGURES = (
         "docs/real_arm.md",
         reduce=real_arm.reduce_localization,
         table=real_arm.localization_table,
+        long=True,
+    ),
+    Figure(
+        "contact_classes",
+        "Classes of contacts of simulated arms that the weights were not found on.",
+        (*STUDY, "contact_classes", "--json"),
+        "130 scenes an arm; the answer of the contact's end, or at 0.5 s if it lasts longer.",
+        "docs/classification.md",
+        reduce=contact_classes.reduce,
+        table=contact_classes.accuracy_table,
+        long=True,
+    ),
+    Figure(
+        "contact_classes_ages",
+        "Classes of contacts that still run, by their age.",
+        (*STUDY, "contact_classes", "--json"),
+        "All arms of the study.",
+        "docs/classification.md",
+        reduce=contact_classes.reduce_ages,
+        table=contact_classes.age_table,
         long=True,
     ),
     Figure(

@@ -15,7 +15,7 @@ from .._pictures import optional_picture
 from ..errors import InputError
 from ..fleet.replay_fleet import Engine
 from ..offline import Replay, replay
-from ..offline.monitor_of import monitor_of
+from ..offline.monitor_of import classifier_of, monitor_of
 from .exit_codes import DAMAGED, INTERRUPTED
 from .fleet import replay_in_parallel
 from .log_options import LogOptions
@@ -51,6 +51,12 @@ def command(
             help="Picture of where and when the robot was touched; of one log, or with --engine of all."
         ),
     ] = None,
+    classes: Annotated[
+        bool,
+        typer.Option(
+            "--classes", help="Say whether contacts are clamped, transient or sustained, and intended."
+        ),
+    ] = False,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print one JSON object a contact, a line each.")
     ] = False,
@@ -88,6 +94,7 @@ def command(
             name=name,
             reading=options.reading(sensors),
             monitor=arguments,
+            classifier={} if classes else None,
             ticks=ticks,
             engine=engine,
             workers=workers,
@@ -108,8 +115,10 @@ def command(
     code = 0
     for path in logs:
         log = options.load_log(path, loaded, sensors)
+        log_monitor = monitor_of(log, loaded, **arguments)
+        classifier = classifier_of(log_monitor, {} if classes else None)
         with progress_bar(path.name, as_json) as show:
-            result = replay(log, monitor_of(log, loaded, **arguments), on_progress=show)
+            result = replay(log, log_monitor, classifier=classifier, on_progress=show)
         print_contacts(path, result, as_json)
         if png is not None:
             from ..offline.contact_picture import save_contact_picture
@@ -133,9 +142,12 @@ def print_contacts(path: Path, result: Replay, as_json: bool) -> None:
     else:
         from rich.console import Console
 
-        from .contact_table import contact_table
+        from .contact_table import class_table, contact_table
 
-        Console().print(contact_table(path.name, result))
+        console = Console()
+        console.print(contact_table(path.name, result))
+        if any(contact.kind for contact in result.contacts):
+            console.print(class_table(result))
     share = float(np.mean(result.ticks["collision"])) if len(result.ticks["time"]) else 0.0
     if share > _OFTEN:
         print(

@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import ContactSenseError
 from ..log import read_log
 from ..offline import Replay, replay
-from ..offline.monitor_of import monitor_of
+from ..offline.monitor_of import classifier_of, monitor_of
 from ..offline.parquet import as_table, replay_tables
 from .dataset import LOGS, Part
 from .settings import Settings
@@ -35,7 +35,8 @@ def replay_log(settings: Settings, path: Path) -> Outcome:
     try:
         made_from = settings.input_of(path)
         log = read_log(path, settings.robot, **settings.reading)
-        result = replay(log, monitor_of(log, settings.robot, **settings.monitor))
+        monitor = monitor_of(log, settings.robot, **settings.monitor)
+        result = replay(log, monitor, classifier=classifier_of(monitor, settings.classifier))
         if result.interrupted:
             return Outcome(failure="interrupted")
         damage = "" if log.reading is None else "; ".join(log.reading.damage)

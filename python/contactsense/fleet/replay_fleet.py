@@ -24,6 +24,7 @@ def replay_fleet(
     name: str | None = None,
     reading: Mapping[str, Any] | None = None,
     monitor: Mapping[str, Any] | None = None,
+    classifier: Mapping[str, Any] | None = None,
     ticks: bool = False,
     engine: Engine = "local",
     workers: int | None = None,
@@ -47,6 +48,8 @@ def replay_fleet(
         name: of the robot in the data set; by default the name of its model.
         reading: arguments of `read_log`, by name.
         monitor: arguments of `ContactMonitor`, by name, without `dt`, which is that of each log.
+        classifier: arguments of `ContactClassifier`, by name, without `dt`; empty for its defaults.
+            None: contacts have no classes.
         ticks: whether there is also a table `ticks`, with a row for each row of each log.
         engine: "local", a process a log; or "ray", one task of Ray a log.
         workers: tasks at a time on this machine; by default one for each core.
@@ -71,10 +74,16 @@ def replay_fleet(
     from .run import Run
     from .settings import Settings
 
-    _check(robot, engine, workers, address, monitor)
+    _check(robot, engine, workers, address, monitor, classifier)
     require("log", "pyarrow")
     settings = Settings(
-        Path(os.path.abspath(folder)), name or robot.name, robot, reading or {}, monitor or {}, ticks
+        Path(os.path.abspath(folder)),
+        name or robot.name,
+        robot,
+        reading=reading or {},
+        monitor=monitor or {},
+        classifier=classifier,
+        ticks=ticks,
     )
     every = list(dict.fromkeys(Path(os.path.abspath(log)) for log in logs))
     run = Run(settings, every, on_progress)
@@ -92,6 +101,7 @@ def _check(
     workers: int | None,
     address: str | None,
     monitor: Mapping[str, Any] | None,
+    classifier: Mapping[str, Any] | None,
 ) -> None:
     if not isinstance(robot, _core.Robot):
         raise InputError(f"robot: expected a contactsense.Robot, got {type(robot).__name__}")
@@ -101,5 +111,7 @@ def _check(
         raise InputError(f"workers: must be at least 1, not {workers}")
     if address is not None and engine != "ray":
         raise InputError(f"address: is that of a Ray cluster; the engine is {engine!r}")
+    from ..offline.monitor_of import classifier_of  # a module that few programs need
+
     # What is wrong for one log is wrong for all.
-    _core.ContactMonitor(robot, dt=0.001, **(monitor or {}))
+    classifier_of(_core.ContactMonitor(robot, dt=0.001, **(monitor or {})), classifier)

@@ -26,6 +26,7 @@ class Settings:
         robot: its model.
         reading: arguments of `read_log`.
         monitor: arguments of `ContactMonitor`.
+        classifier: arguments of `ContactClassifier`; None if contacts are not classified.
         ticks: whether the data set has the table of all ticks.
     """
 
@@ -34,6 +35,7 @@ class Settings:
     robot: _core.Robot
     reading: Mapping[str, Any]
     monitor: Mapping[str, Any]
+    classifier: Mapping[str, Any] | None
     ticks: bool
 
     def input_of(self, log: Path) -> str:
@@ -48,6 +50,8 @@ class Settings:
     @cached_property
     def _digest(self) -> str:
         parts = [_core.__version__, self.name, self.robot, self.reading, self.monitor, self.ticks]
+        if self.classifier is not None:
+            parts.append(self.classifier)
         return _digest(json.dumps(_plain(parts)).encode())
 
 

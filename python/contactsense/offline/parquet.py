@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._extras import require
+from .summary import PROBABILITIES
 from .whole import whole_file
 
 _CONTACT: dict[str, Any] = {
@@ -18,6 +19,8 @@ _CONTACT: dict[str, Any] = {
     "located": np.bool_, "point": 3, "point_local": 3, "region_radius": np.float64, "peak_force": np.float64,
     "force": 3,
 }  # fmt: skip
+# Of contacts that are classified.
+_CLASS: dict[str, Any] = {"kind": str, **dict.fromkeys(PROBABILITIES, np.float64)}
 
 
 def write_parquet(tables: Mapping[str, Mapping[str, NDArray[Any]]], folder: str | os.PathLike[str]) -> None:
@@ -34,13 +37,14 @@ def replay_tables(
     contacts: Sequence[Any], contact_ticks: Mapping[str, NDArray[Any]], ticks: Mapping[str, NDArray[Any]]
 ) -> dict[str, Mapping[str, NDArray[Any]]]:
     """The columns of each table of a `Replay` by its name."""
-    return {"contacts": _contact_columns(contacts), "contact_ticks": contact_ticks, "ticks": ticks}
+    schema = _CONTACT | _CLASS if "clamped" in contact_ticks else _CONTACT
+    return {"contacts": _contact_columns(contacts, schema), "contact_ticks": contact_ticks, "ticks": ticks}
 
 
-def _contact_columns(contacts: Sequence[Any]) -> dict[str, NDArray[Any]]:
+def _contact_columns(contacts: Sequence[Any], schema: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
     """Columns with one value a contact."""
     columns: dict[str, NDArray[Any]] = {}
-    for name, kind in _CONTACT.items():
+    for name, kind in schema.items():
         values = [getattr(contact, name) for contact in contacts]
         if isinstance(kind, int):
             columns[name] = np.array(values, dtype=np.float64).reshape(-1, kind)

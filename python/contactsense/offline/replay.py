@@ -19,7 +19,13 @@ _CHUNK = 2048
 Progress = Callable[[int, int], None]
 
 
-def replay(log: Log, monitor: _core.ContactMonitor, *, on_progress: Progress | None = None) -> Replay:
+def replay(
+    log: Log,
+    monitor: _core.ContactMonitor,
+    *,
+    classifier: _core.ContactClassifier | None = None,
+    on_progress: Progress | None = None,
+) -> Replay:
     """Gives every row of a log to a monitor, as a control loop would have.
 
     The monitor is called with the time between two rows as `dt`, and continues from the state that it has: a
@@ -29,6 +35,8 @@ def replay(log: Log, monitor: _core.ContactMonitor, *, on_progress: Progress | N
     Args:
         log: of the monitor's robot; where it has no `tau`, its `external_torque` is taken.
         monitor: its `dt` is that of the first row.
+        classifier: says of each contact what kind it is; of the monitor's robot, and it continues from the
+            state that it has. None: contacts have no classes.
         on_progress: called from time to time with the number of rows done and of all rows.
 
     Returns:
@@ -47,16 +55,15 @@ def replay(log: Log, monitor: _core.ContactMonitor, *, on_progress: Progress | N
         >>> len(result.contacts), int(result.ticks["collision"].sum())
         (0, 0)
     """
-    _check(log, monitor)
-    collector = Collector(log, monitor)
+    _check(log, monitor, classifier)
+    collector = Collector(log, monitor, classified=classifier is not None)
     rows = len(log)
     interrupted = False
     try:
         for start in range(0, rows, _CHUNK):
             chunk = slice(start, min(start + _CHUNK, rows))
-            collector.add(
-                chunk, *monitor._update_rows(_arrays(log, chunk), _readings(log, chunk), log.tau is None)
-            )
+            arrays, readings = _arrays(log, chunk), _readings(log, chunk)
+            collector.add(chunk, *monitor._update_rows(arrays, readings, log.tau is None, classifier))
             if on_progress is not None:
                 on_progress(chunk.stop, rows)
     except KeyboardInterrupt:
@@ -79,7 +86,7 @@ def _readings(log: Log, chunk: slice) -> NDArray[np.float64] | None:
     return None if log.wrenches is None else log.wrenches[chunk].reshape(-1, 6)
 
 
-def _check(log: Log, monitor: _core.ContactMonitor) -> None:
+def _check(log: Log, monitor: _core.ContactMonitor, classifier: _core.ContactClassifier | None) -> None:
     if not isinstance(log, Log):
         raise InputError(f"log: expected a contactsense.Log, got {type(log).__name__}")
     if not isinstance(monitor, _core.ContactMonitor):
@@ -91,3 +98,11 @@ def _check(log: Log, monitor: _core.ContactMonitor) -> None:
     sensors = 0 if log.wrenches is None else log.wrenches.shape[1]
     if sensors != len(monitor.sensors):
         raise InputError(f"log: has wrenches of {sensors} sensors; the monitor has {len(monitor.sensors)}")
+    if classifier is None:
+        return
+    if not isinstance(classifier, _core.ContactClassifier):
+        raise InputError(
+            f"classifier: expected a contactsense.ContactClassifier, got {type(classifier).__name__}"
+        )
+    if (classifier.robot.nq, classifier.robot.nv) != (robot.nq, robot.nv):
+        raise InputError(f"classifier: is of '{classifier.robot.name}', the monitor of '{robot.name}'")

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,12 @@ class ReplayedContact:
         region_radius: of the region that holds 90 % of the posterior [m].
         peak_force: greatest force [N]; NaN where no force is known.
         force: `(3,)`, at that time, world frame, acting on the robot [N].
+        kind: the likeliest of "clamped", "transient" and "sustained", as said at the contact's end; "unknown"
+            where torques of several contacts are not known apart. Empty if contacts are not classified.
+        clamped: probability that it is held between the robot and something fixed; NaN where not known.
+        transient: probability that it ends by itself shortly.
+        sustained: probability that it lasts with something that follows or yields.
+        intended: probability that it is intended.
 
     Raises:
         TypeError: an argument is missing.
@@ -61,10 +68,21 @@ class ReplayedContact:
     region_radius: float
     peak_force: float
     force: NDArray[np.float64]
+    kind: str = field(default_factory=str)  # as a plain default it would be an attribute of the class
+    clamped: float = math.nan
+    transient: float = math.nan
+    sustained: float = math.nan
+    intended: float = math.nan
 
     def to_dict(self) -> dict[str, Any]:
-        """All attributes by name, as plain Python values; numbers that are not known are None."""
-        return {field.name: _plain(getattr(self, field.name)) for field in fields(self)}
+        """All attributes by name, as plain Python values; numbers that are not known are None.
+
+        Those of the class are left out if contacts are not classified.
+        """
+        names = [each.name for each in fields(self)]
+        if not self.kind:
+            names = names[: names.index("kind")]
+        return {name: _plain(getattr(self, name)) for name in names}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -78,7 +96,8 @@ class Replay:
             `external_torque` `(n, nv)` [s, Nm]; see `ContactReport`.
         contact_ticks: columns with one value for each contact in each tick: `row`, `time`, `id`, `link`,
             `link_probability`, `located`, `probability`, `point_std`, `region_radius`, `point`,
-            `point_local`, `force`; see `Contact`.
+            `point_local`, `force`; see `Contact`. With a classifier also `clamped`, `transient`, `sustained`
+            and `intended`, as it said in that tick; NaN where it said nothing of the contact.
         contacts: one for each contact, in the order of their begin.
         interrupted: whether Ctrl-C ended it before the log's end.
         sensors: of the monitor, in the order of the log's wrenches.

@@ -8,11 +8,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _core
 from .result import ReplayedContact
 
+# Of the class of a contact.
+PROBABILITIES = ("clamped", "transient", "sustained", "intended")
 
-def contacts_of(ticks: Mapping[str, NDArray[Any]]) -> tuple[ReplayedContact, ...]:
-    """The contacts in the order of their begin.
+
+def contacts_of(
+    ticks: Mapping[str, NDArray[Any]], classes: Mapping[int, _core.ContactClass] | None = None
+) -> tuple[ReplayedContact, ...]:
+    """The contacts in the order of their begin; `classes` by number, None if they are not classified.
 
     A contact's place is that of the last tick that locates it, else of the last that has one, since what is
     known of it grows. The first ticks, before there is a posterior, count only where there is none later. Its
@@ -20,10 +26,17 @@ def contacts_of(ticks: Mapping[str, NDArray[Any]]) -> tuple[ReplayedContact, ...
     """
     numbers, first = np.unique(ticks["id"], return_index=True)
     ordered = numbers[np.argsort(first, kind="stable")]
-    return tuple(_contact(int(number), ticks, np.flatnonzero(ticks["id"] == number)) for number in ordered)
+    return tuple(
+        _contact(int(number), ticks, np.flatnonzero(ticks["id"] == number), classes) for number in ordered
+    )
 
 
-def _contact(number: int, ticks: Mapping[str, NDArray[Any]], rows: NDArray[np.intp]) -> ReplayedContact:
+def _contact(
+    number: int,
+    ticks: Mapping[str, NDArray[Any]],
+    rows: NDArray[np.intp],
+    classes: Mapping[int, _core.ContactClass] | None,
+) -> ReplayedContact:
     placed = rows[np.all(np.isfinite(ticks["point_local"][rows]), axis=1)]
     judged = placed[np.isfinite(ticks["region_radius"][placed])]
     placed = judged if len(judged) else placed
@@ -49,4 +62,11 @@ def _contact(number: int, ticks: Mapping[str, NDArray[Any]], rows: NDArray[np.in
         region_radius=float(ticks["region_radius"][told]),
         peak_force=float(forces[known].max()) if known.any() else float("nan"),
         force=ticks["force"][peak].copy() if peak is not None else np.full(3, np.nan),
+        **({} if classes is None else _class_of(classes.get(number))),
     )
+
+
+def _class_of(found: _core.ContactClass | None) -> dict[str, Any]:
+    if found is None:
+        return {"kind": "unknown"}
+    return {"kind": found.kind, **{name: getattr(found, name) for name in PROBABILITIES}}

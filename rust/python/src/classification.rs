@@ -14,11 +14,12 @@ use crate::report::PyContactReport;
 use crate::robot::PyRobot;
 use crate::robot_argument::robot;
 
-const ATTRIBUTES: [&str; 10] = [
+const ATTRIBUTES: [&str; 11] = [
     "id",
     "running",
     "since",
     "duration",
+    "kind",
     "clamped",
     "transient",
     "sustained",
@@ -59,7 +60,7 @@ pub struct PyContactClassifier {
 }
 
 impl PyContactClassifier {
-    fn sole(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, ContactClassifier>> {
+    pub(crate) fn sole(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, ContactClassifier>> {
         sole(py, "ContactClassifier", &self.classifier)
     }
 }
@@ -184,6 +185,12 @@ impl PyContactClass {
     #[getter]
     fn duration(&self) -> f64 {
         self.0.duration
+    }
+
+    /// The likeliest of "clamped", "transient" and "sustained".
+    #[getter]
+    fn kind(&self) -> &'static str {
+        self.0.kind().name()
     }
 
     /// Probability that it is held between the robot and something fixed.

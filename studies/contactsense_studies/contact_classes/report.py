@@ -14,7 +14,8 @@ from .study import Study
 NOTES = (
     f"The answer that counts is that of the contact's end, or at {VERDICT:g} s if it lasts longer.",
     f"The weights were found on {' and '.join(FITTED)}, on scenes of other seeds.",
-    "clamped or transient: contacts that are either, and the share in which the likelier of the two is it.",
+    "either: contacts that are clamped or transient, and the share in which the likelier of the two is it.",
+    "of three: share of all in which the likeliest of clamped, transient and sustained is it.",
     "missed: not detected; open: the scene ends before there is an answer.",
     "error: expected calibration error of the probability, over ten bins.",
 )
@@ -31,8 +32,8 @@ def print_study(study: Study, console: Console) -> None:
 
 def _accuracy(scores: dict[str, Score]) -> Table:
     figures = (
-        *("\nn", "\nmissed", "\nopen", "clamped or\ntransient n", "\nright %", "of three\n%"),
-        *("kind\nerror", "intended\nright %", "intended\nerror"),
+        *("\nn", "\nmissed", "\nopen", "either\nn", "either\n%", "of three\n%"),
+        *("kind\nerror", "intended\n%", "intended\nerror"),
     )
     table = sheet("Contacts told apart", ("",), figures)
     for name, each in scores.items():

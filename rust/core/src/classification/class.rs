@@ -36,6 +36,49 @@ pub struct ContactClass {
     pub contributions: [[f64; FEATURES]; 4],
 }
 
+/// The three kinds of contacts.
+///
+/// ```
+/// use contactsense::classification::{ContactClass, Kind};
+///
+/// let hit = ContactClass { clamped: 0.1, transient: 0.8, sustained: 0.1, ..ContactClass::default() };
+/// assert_eq!(hit.kind(), Kind::Transient);
+/// assert_eq!(hit.kind().name(), "transient");
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Held between the robot and something fixed.
+    Clamped,
+    /// Ends by itself shortly.
+    Transient,
+    /// Lasts with something that follows or yields.
+    Sustained,
+}
+
+impl Kind {
+    /// In lower case.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Clamped => "clamped",
+            Kind::Transient => "transient",
+            Kind::Sustained => "sustained",
+        }
+    }
+}
+
+impl ContactClass {
+    /// The likeliest kind.
+    pub fn kind(&self) -> Kind {
+        if self.clamped >= self.transient.max(self.sustained) {
+            Kind::Clamped
+        } else if self.transient >= self.sustained {
+            Kind::Transient
+        } else {
+            Kind::Sustained
+        }
+    }
+}
+
 impl Default for ContactClass {
     fn default() -> Self {
         let [clamped, transient, sustained] = SHARES;

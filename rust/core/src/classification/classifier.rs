@@ -49,6 +49,7 @@ const MOST_INSTANTS: usize = 1000;
 /// let [contact] = classifier.classes() else { panic!("one contact") };
 /// assert!(contact.running && contact.features.approach_speed == 0.0);
 /// assert!((contact.clamped + contact.transient + contact.sustained - 1.0).abs() < 1e-12);
+/// assert_eq!(classifier.reported(), [(0, Some(0))]);
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -69,8 +70,11 @@ pub struct ContactClassifier {
     followed: Vec<Followed>,
     /// The first of `followed` are in use.
     count: usize,
+    /// Contacts since the last reset.
+    begun: u64,
     time: Option<f64>,
     classes: Vec<ContactClass>,
+    reported: Vec<(u64, Option<usize>)>,
 }
 
 impl ContactClassifier {
@@ -94,8 +98,10 @@ impl ContactClassifier {
             torque: vec![0.0; nv],
             followed: vec![Followed::with_room(nv); MOST],
             count: 0,
+            begun: 0,
             time: None,
-            classes: Vec::with_capacity(2 * MOST),
+            classes: Vec::with_capacity(MOST),
+            reported: Vec::with_capacity(MOST),
             robot,
         })
     }
@@ -118,6 +124,7 @@ impl ContactClassifier {
         };
         self.time = Some(report.time);
         self.classes.clear();
+        self.reported.clear();
         let whole = self.instant(&report.collision_torque, v, step);
         if report.collision {
             self.take_in(q, v, report, whole);
@@ -133,10 +140,18 @@ impl ContactClassifier {
         &self.classes
     }
 
+    /// Of each of [`classes`](Self::classes): which contact it is, counted from 0 since the last reset, and its place among the
+    /// contacts of the report, if the report had it. The number stays where a contact goes on under another `id`.
+    pub fn reported(&self) -> &[(u64, Option<usize>)] {
+        &self.reported
+    }
+
     /// Forgets all contacts.
     pub fn reset(&mut self) {
         self.count = 0;
+        self.begun = 0;
         self.time = None;
+        self.reported.clear();
         self.instants.clear();
         self.velocities.clear();
         self.classes.clear();
@@ -169,17 +184,18 @@ impl ContactClassifier {
             // One, or several whose torques are not known apart: all of the torque is of the first.
             let id = contacts.first().and_then(|contact| contact.track.as_ref()).map(|track| track.id);
             if let Some(which) = self.find(id, contacts.len() < 2, report.time, v) {
-                self.followed[which].take_in(whole, &report.collision_torque, report.time);
+                let place = (!contacts.is_empty()).then_some(0);
+                self.followed[which].take_in(whole, &report.collision_torque, report.time, place);
             }
             return;
         }
         self.kinematics.set_configuration(&self.robot, q);
-        for contact in contacts {
+        for (place, contact) in contacts.iter().enumerate() {
             self.set_torque(contact);
             let instant = self.instant(&self.torque, v, whole.step);
             let id = contact.track.as_ref().map(|track| track.id);
             if let Some(which) = self.find(id, false, report.time, v) {
-                self.followed[which].take_in(instant, &self.torque, report.time);
+                self.followed[which].take_in(instant, &self.torque, report.time, Some(place));
             }
         }
     }
@@ -221,7 +237,8 @@ impl ContactClassifier {
             self.oldest.copy_from_slice(v);
         }
         let new = &mut self.followed[self.count];
-        new.begin(id, time, &self.oldest);
+        new.begin(self.begun, id, time, &self.oldest);
+        self.begun += 1;
         if first {
             self.instants.iter().for_each(|instant| new.recall(*instant));
         }
@@ -235,6 +252,8 @@ impl ContactClassifier {
         while which < self.count {
             let ended = time - self.followed[which].last > ENDED;
             self.classes.push(judge(&self.followed[which], !ended, &self.prior));
+            let followed = &mut self.followed[which];
+            self.reported.push((followed.number, followed.place.take()));
             if ended {
                 self.count -= 1;
                 self.followed.swap(which, self.count);

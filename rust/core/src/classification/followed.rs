@@ -25,7 +25,11 @@ pub(super) struct Instant {
 /// What is kept of a contact.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Followed {
+    /// Which of all contacts it is; stays where `id` changes.
+    pub number: u64,
     pub id: Option<u64>,
+    /// Among the contacts of this tick's report.
+    pub place: Option<usize>,
     pub since: f64,
     pub last: f64,
     /// Velocities before the onset (rad/s, m/s).
@@ -50,10 +54,10 @@ impl Followed {
     }
 
     /// A contact that begins at `time`; `before` are the velocities a little earlier.
-    pub fn begin(&mut self, id: Option<u64>, time: f64, before: &[f64]) {
+    pub fn begin(&mut self, number: u64, id: Option<u64>, time: f64, before: &[f64]) {
         let mut room = std::mem::take(&mut self.before);
         room.copy_from_slice(before);
-        *self = Followed { id, since: time, last: time, before: room, ..Self::default() };
+        *self = Followed { number, id, since: time, last: time, before: room, ..Self::default() };
     }
 
     /// What the torque was before it was noticed, oldest first.
@@ -62,10 +66,10 @@ impl Followed {
         self.work(instant);
     }
 
-    /// An instant of it; `torque` is its own (Nm, N).
-    pub fn take_in(&mut self, instant: Instant, torque: &[f64], time: f64) {
+    /// An instant of it, at its place in the report if it has one; `torque` is its own (Nm, N).
+    pub fn take_in(&mut self, instant: Instant, torque: &[f64], time: f64, place: Option<usize>) {
         let Instant { force, power, step } = instant;
-        self.last = time;
+        (self.last, self.place) = (time, place);
         self.rise(instant);
         self.present += (1.0 - (-step / PRESENT).exp()) * (force - self.present);
         self.impulse += force * step;

@@ -9,7 +9,7 @@ mod logits;
 mod prior;
 mod weights;
 
-pub use class::ContactClass;
+pub use class::{ContactClass, Kind};
 pub use classifier::ContactClassifier;
 pub use features::{Features, FEATURES, FEATURE_NAMES};
 pub use prior::ClassifierOptions;
