@@ -1,4 +1,4 @@
-"""What `calibrate` finds of simulated arms whose errors are known, and whether its stated uncertainty covers them."""
+"""What `calibrate` finds of the known errors of simulated arms, and whether its uncertainty covers them."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def last_link(robot: Robot) -> str:
 
 
 def linear(arm: sim.ImperfectArm) -> sim.ImperfectArm:
-    """Without the errors that no linear model has: hysteresis, and the scale that a payload's mass repeats."""
+    """Without hysteresis, and without errors of scale, which no log tells from masses."""
     return replace(arm, hysteresis=0.0, torque_scale=1.0)
 
 
@@ -72,7 +72,7 @@ def recover(robot: Robot, arm: sim.ImperfectArm, motion: sim.JointMotion, seed: 
         bias=found.torque_bias - arm.per_joint("torque_bias", robot.nv),
         bias_std=np.array(found.torque_bias_std),
         coulomb=found.friction.coulomb - seen,
-        coulomb_std=np.array(found.coulomb_std),
+        coulomb_std=np.array(found.friction.coulomb_std),
         coulomb_true=seen,
         noise=np.array(found.noise.torque) / arm.per_joint("torque_noise", robot.nv),
         mass=held.mass / load.mass - 1.0,
