@@ -175,6 +175,21 @@ def test_a_torque_that_is_scaled_is_found() -> None:
     np.testing.assert_array_equal(cs.calibrate(IIWA, log(tau)).torque_scale, 1.0)
 
 
+def test_gears_with_hysteresis_do_not_scale_torques() -> None:
+    pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install contactsense[sim]")
+    from contactsense import sim
+
+    # Small changes of a torque come through such a gear as if it were an eighth smaller.
+    arm = sim.ImperfectArm.typical(IIWA, seed=0)
+    run = sim.record_imperfect(IIWA, arm, cs.exciting_motion(IIWA, 30.0, dt=TICK), seed=0)
+    np.testing.assert_array_equal(cs.calibrate(IIWA, run.log).torque_scale, 1.0)
+
+
+def test_rotors_do_not_scale_torques() -> None:
+    tau = torques() + 0.3 + 0.5 * np.tanh(motion().v / 0.01) + 5.0 * motion().a + white(0.05)
+    np.testing.assert_array_equal(cs.calibrate(IIWA, log(tau)).torque_scale, 1.0)
+
+
 def test_a_contact_is_left_out() -> None:
     tau = torques() + white(0.05)
     touched = (motion().time > 8.0) & (motion().time < 8.5)

@@ -8,7 +8,7 @@ use super::folds::{enough, fit, hold_out, HeldOut, CHANGES, USUAL_CHANGE};
 use super::hysteresis::{USUAL_WIDTH, WIDTHS};
 use super::log::Log;
 use super::noise::white;
-use super::normal::{of_external, own_terms, terms, Joints, Shape};
+use super::normal::{of_external, own_terms, scaled, terms, Joints, Shape};
 use super::rows::{rows, torque_deviations, Filter, Row};
 use super::scale;
 use super::shapes::{Choice, CLEAR_OF_NOISE};
@@ -56,14 +56,22 @@ pub fn calibrate(robot: &Robot, log: &Log<'_>, options: &CalibrationOptions) -> 
     let external = options.torque_is_external;
     let velocity_delay = if external { 0.0 } else { velocity_delay(robot, log, step)[0] };
     let v = smooth_velocity(robot, log, velocity_delay, step);
+    let smooth = Log { v: &v, ..*log };
+    let mut rows = enough_rows(robot, &smooth, &filter)?;
     let scales = if external {
+        rows = rows.into_iter().map(of_external).collect();
         vec![1.0; robot.nv()]
     } else {
-        torque_scales(robot, &Log { v: &v, ..*log }, options, &filter)?
+        torque_scales(robot, &smooth, options, &rows)
     };
+    let fit = |scales: &[f64]| {
+        let tau = multiplied(log.tau, scales);
+        let rows = rows.iter().map(|row| scaled(row, scales)).collect();
+        Fit::of(robot, &Log { tau: &tau, ..smooth }, options, &filter, velocity_delay, step, rows)
+    };
+    let (scales, fit) = scale::needed(scales, fit)?;
     let tau = multiplied(log.tau, &scales);
     let log = Log { tau: &tau, ..*log };
-    let fit = Fit::of(robot, &Log { v: &v, ..log }, options, &filter, velocity_delay, step)?;
     Ok(Calibration { torque_scale: scales, ..fit.calibration(robot, &log, options, step)? })
 }
 
@@ -89,11 +97,8 @@ impl Fit {
         filter: &Filter,
         velocity_delay: f64,
         step: f64,
+        rows: Vec<Row>,
     ) -> Result<Self> {
-        let mut rows = enough_rows(robot, log, filter)?;
-        if options.torque_is_external {
-            rows = rows.into_iter().map(of_external).collect();
-        }
         let mut term_units = term_units(robot, log, &rows);
         if options.torque_is_external {
             // All of an external torque may be bias.
@@ -160,17 +165,12 @@ fn enough_rows(robot: &Robot, log: &Log<'_>, filter: &Filter) -> Result<Vec<Row>
 }
 
 /// Scale and sign of each torque.
-fn torque_scales(
-    robot: &Robot,
-    log: &Log<'_>,
-    options: &CalibrationOptions,
-    filter: &Filter,
-) -> Result<Vec<f64>> {
+fn torque_scales(robot: &Robot, log: &Log<'_>, options: &CalibrationOptions, rows: &[Row]) -> Vec<f64> {
     let unknowns = |scales: &[f64], rows: &[Row]| {
         let tau = multiplied(log.tau, scales);
         Unknowns::new(robot, options.payload_link, term_units(robot, &Log { tau: &tau, ..*log }, rows))
     };
-    Ok(scale::torque_scales(&enough_rows(robot, log, filter)?, robot.nv(), unknowns))
+    scale::torque_scales(rows, robot.nv(), unknowns)
 }
 
 fn multiplied(tau: &[f64], scales: &[f64]) -> Vec<f64> {

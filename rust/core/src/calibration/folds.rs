@@ -130,7 +130,7 @@ fn sum(blocks: &[Normal], without: Option<usize>) -> Normal {
 }
 
 /// By block, the sum over joints of the logarithm of the mean square: no joint counts more because its torques are larger.
-fn scores(residuals: &[DVector<f64>], used: &[bool]) -> Vec<f64> {
+pub(super) fn scores(residuals: &[DVector<f64>], used: &[bool]) -> Vec<f64> {
     let joints = residuals.first().map_or(0, DVector::len);
     let score = |block: usize| {
         let rows = (0..residuals.len()).filter(|row| used[*row] && block_of(*row, residuals.len()) == block);

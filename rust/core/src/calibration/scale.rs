@@ -2,11 +2,13 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::folds::{hold_out, is_less, HeldOut, CHANGES};
+use super::calibrate::Fit;
+use super::folds::{hold_out, is_less, scores, HeldOut, CHANGES};
 use super::normal::{own_terms, scaled, torque, Joints, Shape};
 use super::rows::Row;
 use super::uncertainty::weight;
-use super::unknowns::{Unknowns, BIAS, COULOMB, VISCOUS};
+use super::unknowns::{Unknowns, ARMATURE, BIAS, COULOMB, VISCOUS};
+use crate::error::Result;
 
 /// A scale that is nearer to one is the masses' business: descriptions are no better.
 const LEAST: f64 = 0.1;
@@ -14,8 +16,8 @@ const LEAST: f64 = 0.1;
 const SIGNIFICANT: f64 = 3.0;
 /// Of neighbouring rows so many err together, as a rule.
 const TOGETHER: f64 = 10.0;
-/// One of the two torques, bias, friction and viscous friction.
-const COLUMNS: usize = 4;
+/// One of the two torques, bias, friction, viscous friction and rotor inertia.
+const COLUMNS: usize = 5;
 /// Any shape: scale is told by motion, not by where it turns round.
 const SHAPE: Shape = Shape { friction: 0, hysteresis: None };
 
@@ -64,6 +66,42 @@ pub(super) fn torque_scales(
     scales
 }
 
+/// The scales that are needed when each joint has the friction and hysteresis that its fit found, and the fit with them. A
+/// gear with hysteresis passes on small changes of a torque as if its scale were smaller: a scale stays where held-out blocks
+/// leave less with it than with hysteresis alone.
+pub(super) fn needed(
+    mut scales: Vec<f64>,
+    fit_of: impl Fn(&[f64]) -> Result<Fit>,
+) -> Result<(Vec<f64>, Fit)> {
+    let mut fit = fit_of(&scales)?;
+    for joint in 0..scales.len() {
+        let mut without = scales.clone();
+        without[joint] = scales[joint].signum();
+        if without == scales {
+            continue;
+        }
+        let Ok(simpler) = fit_of(&without) else { continue };
+        let (with, alone) = left_of([&fit, &simpler], [&scales, &without]);
+        if !is_less(&with, &alone) {
+            (scales, fit) = (without, simpler);
+        }
+    }
+    Ok((scales, fit))
+}
+
+/// What held-out blocks of two fits leave in the rows that both use, in units of the measured torque.
+fn left_of(fits: [&Fit; 2], scales: [&[f64]; 2]) -> (Vec<f64>, Vec<f64>) {
+    let used: Vec<bool> = fits[0].used.iter().zip(&fits[1].used).map(|(a, b)| *a && *b).collect();
+    let left = |k: usize| measured(scores(&fits[k].held_out.residuals, &used), scales[k]);
+    (left(0), left(1))
+}
+
+/// Scores of residuals of scaled torques, in units of the measured ones.
+fn measured(scores: Vec<f64>, scales: &[f64]) -> Vec<f64> {
+    let growth: f64 = scales.iter().map(|scale| 2.0 * scale.abs().ln()).sum();
+    scores.iter().map(|score| score - growth).collect()
+}
+
 /// The factor from a joint's measured torque to that of the description, friction and bias aside; one where it may be one.
 ///
 /// Errors of what a line is fitted over make it flat: of the measured torque over the description's as well as the other way
@@ -101,7 +139,7 @@ impl Slope {
             let own = own_terms(row, joint, SHAPE);
             let (measured, model) = (torque(row, joint), torque(row, joint) - row.unexplained[joint]);
             let (over, fitted) = if over_model { (model, measured) } else { (measured, model) };
-            let columns = SVector::from([over, own[BIAS], own[COULOMB], own[VISCOUS]]);
+            let columns = SVector::from([over, own[BIAS], own[COULOMB], own[VISCOUS], own[ARMATURE]]);
             matrix += columns * columns.transpose();
             right += columns * fitted;
             square += fitted * fitted;
@@ -127,6 +165,5 @@ fn judge(rows: &[Row], scales: &[f64], unknowns_of: impl Fn(&[f64], &[Row]) -> U
     let weights = (0..scales.len()).map(|j| weight(&unexplained, &used, j)).collect();
     let joints = Joints { weights, shapes: vec![SHAPE; scales.len()] };
     let HeldOut { scores, .. } = hold_out(&unknowns, &joints, &rows, &used, &CHANGES)?;
-    let growth: f64 = scales.iter().map(|scale| 2.0 * scale.abs().ln()).sum();
-    Some(scores.iter().map(|score| score - growth).collect())
+    Some(measured(scores, scales))
 }
