@@ -95,6 +95,7 @@ LAYERS = {
     "examples": ("contactsense.demo", "contactsense_studies"),
 }
 ABOVE = (
+    "test_calibration_recovery",
     "test_cli",
     "test_contact_classes_study",
     "test_demo",
