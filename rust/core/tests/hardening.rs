@@ -15,6 +15,8 @@ mod mutation;
 mod originals;
 #[path = "../examples/harden/random.rs"]
 mod random;
+#[path = "../examples/harden/robots.rs"]
+mod robots;
 #[path = "../examples/harden/soak.rs"]
 mod soak;
 

@@ -16,8 +16,8 @@ use contactsense::sensor::{identify_tool, LoadCompensator};
 use contactsense::{best_cone_force, NoiseModel, Result};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::calls::{configuration, link, sensor};
 use crate::random::Random;
+use crate::robots::{configuration, link, sensor};
 
 /// Most rows of a log: of most, which are then too short, and of one in twenty.
 const ROWS: usize = 60;

@@ -11,6 +11,7 @@ mod made;
 mod mutation;
 mod originals;
 mod random;
+mod robots;
 mod soak;
 
 fn main() -> ExitCode {

@@ -3,6 +3,7 @@
 mod calibrate;
 #[allow(clippy::module_inception)] // the room is called after what it makes
 mod calibration;
+mod complete_fit;
 mod contacts;
 mod delay;
 mod excitation;

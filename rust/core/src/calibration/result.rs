@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use nalgebra::DVector;
 
-use super::calibrate::Fit;
 use super::calibration::{armature, body_inertia};
+use super::complete_fit::Fit;
 use super::contacts::stretches;
 use super::folds::mean_square;
 use super::hysteresis::WIDTHS;

@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::calibrate::Fit;
+use super::complete_fit::Fit;
 use super::folds::{hold_out, is_less, scores, HeldOut, CHANGES};
 use super::normal::{own_terms, scaled, torque, Joints, Shape};
 use super::rows::Row;
