@@ -3,7 +3,7 @@
 //! A hypothesis is the link, the place on it where it touched first, and the radius of the obstacle: these fix the obstacle's centre
 //! in the world for good, and with it the place and the depth of the contact at every later pose. Its force and stiffness, which
 //! the torques are linear in, are integrated out (`sums.rs`). The kernel that takes hypotheses from one measurement to the next
-//! is [`tempering`](crate::posterior::tempering), the model it is given is in `path.rs`.
+//! is in `posterior/tempering.rs`, the model it is given is in `path.rs`.
 
 mod hypothesis;
 mod measurements;
