@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import typer
@@ -84,6 +84,7 @@ def command(
         raise InputError(f"png: is a picture of one log, and there are {len(logs)}")
     png = optional_picture("png", png)
     sensors, arguments = monitor.sensors(), monitor.arguments()
+    classifying: dict[str, Any] | None = {} if classes else None
     if engine is not None:
         if out is None:
             raise InputError("out: --engine needs the folder of the data set")
@@ -94,7 +95,7 @@ def command(
             name=name,
             reading=options.reading(sensors),
             monitor=arguments,
-            classifier={} if classes else None,
+            classifier=classifying,
             ticks=ticks,
             engine=engine,
             workers=workers,
@@ -116,7 +117,7 @@ def command(
     for path in logs:
         log = options.load_log(path, loaded, sensors)
         log_monitor = monitor_of(log, loaded, **arguments)
-        classifier = classifier_of(log_monitor, {} if classes else None)
+        classifier = classifier_of(log_monitor, classifying)
         with progress_bar(path.name, as_json) as show:
             result = replay(log, log_monitor, classifier=classifier, on_progress=show)
         print_contacts(path, result, as_json)

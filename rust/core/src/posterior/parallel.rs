@@ -20,6 +20,16 @@ pub(crate) trait Pieces: Sized + Send {
     fn split(self, middle: usize) -> (Self, Self);
 }
 
+impl<T: Send> Pieces for &mut [T] {
+    fn count(&self) -> usize {
+        self.len()
+    }
+
+    fn split(self, middle: usize) -> (Self, Self) {
+        self.split_at_mut(middle)
+    }
+}
+
 /// How samples are worked on.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Course<'a> {

@@ -7,8 +7,8 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::evidence::Evidence;
-use super::memory::{filled, space};
-use super::parallel::{Course, Pieces};
+use super::memory::filled;
+use super::parallel::Course;
 use super::resampling::{effective_share, normalise, systematic};
 use crate::error::Result;
 use crate::math::bisection::last_where;
@@ -31,9 +31,12 @@ pub(crate) struct Logs {
 impl Logs {
     /// At a share of the way.
     fn at(&self, share: f64) -> f64 {
-        let added = share * self.added;
-        // Where nothing is added a density of zero counts for nothing.
-        self.start + if share == 0.0 { 0.0 } else { added }
+        // At the start a density of zero at the end counts for nothing.
+        if share == 0.0 {
+            self.start
+        } else {
+            self.start + share * self.added
+        }
     }
 }
 
@@ -85,33 +88,15 @@ pub(crate) struct Samples<S> {
     spare: Vec<S>,
 }
 
-struct Part<'a, S>(&'a mut [S]);
-
-impl<S: Send> Pieces for Part<'_, S> {
-    fn count(&self) -> usize {
-        self.0.len()
-    }
-
-    fn split(self, middle: usize) -> (Self, Self) {
-        let (left, right) = self.0.split_at_mut(middle);
-        (Part(left), Part(right))
-    }
-}
-
 impl<S: Clone + Send + Sync> Samples<S> {
     /// So many, all alike.
     ///
     /// # Errors
     /// [`Error::Memory`](crate::Error::Memory) where there is no space for so many.
     pub fn new(count: usize, first: S) -> Result<Self> {
-        let copies = |first: &S| -> Result<Vec<S>> {
-            let mut all = space(count)?;
-            all.resize(count, first.clone());
-            Ok(all)
-        };
         Ok(Samples {
-            all: copies(&first)?,
-            spare: copies(&first)?,
+            spare: filled(first.clone(), count)?,
+            all: filled(first, count)?,
             weights: filled(1.0 / count as f64, count)?,
             log_weights: filled(0.0, count)?,
             evidence: Evidence::of(count),
@@ -192,8 +177,8 @@ impl<S: Clone + Send + Sync> Samples<S> {
         self.restart();
         let accepted = AtomicUsize::new(0);
         let stream = random.fork(1);
-        let work = |start: usize, part: Part<'_, S>| {
-            for (k, sample) in part.0.iter_mut().enumerate() {
+        let work = |start: usize, samples: &mut [S]| {
+            for (k, sample) in samples.iter_mut().enumerate() {
                 for turn in 0..moves {
                     let first = ((start + k) * moves + turn) as u64 * DRAWS;
                     let Some(other) = path.propose(sample, &stream, first) else { continue };
@@ -206,7 +191,7 @@ impl<S: Clone + Send + Sync> Samples<S> {
                 }
             }
         };
-        course.for_each(Part(&mut self.all), 0, &work);
+        course.for_each(&mut self.all[..], 0, &work);
         accepted.into_inner()
     }
 }

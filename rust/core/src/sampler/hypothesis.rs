@@ -18,8 +18,7 @@ pub(super) struct Hypothesis {
     pub log_radius: f64,
     /// Of the obstacle, world frame (m).
     pub centre: Vector3<f64>,
-    /// Of the measurements before the newest one, and of those with it.
-    pub before: Sums,
+    /// Of the measurements that count now.
     pub now: Sums,
     /// At the newest pose: point and outward normal, link frame, and the triangle that holds it.
     pub point: Vector3<f64>,

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::hypothesis::Hypothesis;
 use super::measurements::{Measurement, Measurements};
-use super::sums::{Marginal, Prior, Sums};
+use super::sums::{Prior, Sums};
 use crate::math::random::Stream;
 use crate::particle::{signed, tangent};
 use crate::posterior::tempering::{Logs, Path};
@@ -53,24 +53,19 @@ impl ObstaclePath<'_> {
             place,
             log_radius,
             centre,
-            before: Sums::default(),
             now: Sums::default(),
             point: place.point,
             normal: place.normal,
             triangle: place.triangle,
             deeper: 0.0,
             logs: Logs { start: 0.0, added: 0.0 },
-            marginal: Marginal {
-                log: 0.0,
-                force: self.prior.force[0],
-                stiffness: self.prior.stiffness[0],
-                misfit: 0.0,
-            },
+            marginal: self.prior.integrate(&Sums::default()),
         };
+        let mut before = Sums::default();
         for measurement in self.measurements.iter() {
             let touch = self.touch(surface, &made, measurement, made.triangle);
             if measurement.before {
-                made.before += &touch.sums;
+                before += &touch.sums;
             }
             if measurement.now {
                 made.now += &touch.sums;
@@ -78,14 +73,13 @@ impl ObstaclePath<'_> {
             (made.point, made.normal) = (touch.point, touch.normal);
             (made.triangle, made.deeper) = (touch.triangle, touch.deeper);
         }
-        self.set_logs(&mut made, None);
+        self.set_logs(&mut made, self.prior.integrate(&before).log);
         Some(made)
     }
 
     /// Takes the newest measurement into a hypothesis that knows those before it.
     pub fn follow(&self, hypothesis: &mut Hypothesis) {
         let Some(surface) = self.surface(hypothesis.link) else { return };
-        hypothesis.before = hypothesis.now;
         if let Some(dropped) = self.measurements.dropped() {
             let touch = self.touch(surface, hypothesis, dropped, hypothesis.place.triangle);
             hypothesis.now -= &touch.sums;
@@ -94,12 +88,11 @@ impl ObstaclePath<'_> {
         hypothesis.now += &touch.sums;
         (hypothesis.point, hypothesis.normal) = (touch.point, touch.normal);
         (hypothesis.triangle, hypothesis.deeper) = (touch.triangle, touch.deeper);
-        let known = hypothesis.marginal.log;
-        self.set_logs(hypothesis, Some(known));
+        self.set_logs(hypothesis, hypothesis.marginal.log);
     }
 
-    fn set_logs(&self, hypothesis: &mut Hypothesis, known: Option<f64>) {
-        let start = known.unwrap_or_else(|| self.prior.integrate(&hypothesis.before).log);
+    /// `start`: the logarithm of the likelihood before the newest measurement.
+    fn set_logs(&self, hypothesis: &mut Hypothesis, start: f64) {
         hypothesis.marginal = self.prior.integrate(&hypothesis.now);
         let end = hypothesis.marginal.log;
         // From a density of zero no way leads back.

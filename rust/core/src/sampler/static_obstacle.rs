@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
 
 use super::hypothesis::Hypothesis;
-use super::measurements::Measurements;
+use super::measurements::{Measurement, Measurements};
 use super::options::SamplerOptions;
 use super::path::ObstaclePath;
 use super::sums::Prior;
@@ -13,8 +13,8 @@ use crate::error::{Error, Result};
 use crate::math::chi_square::upper_limit;
 use crate::math::random::Stream;
 use crate::particle::{exposed_places, Event, FilterEstimate, FilterOptions, Instant};
-use crate::posterior::parallel::{Course, Pieces, Pool};
-use crate::posterior::tempering::{Samples, Tempering};
+use crate::posterior::parallel::{Course, Pool};
+use crate::posterior::tempering::{Samples, Tempering, Travelled};
 use crate::posterior::{Clusters, MOST_MODES};
 use crate::robot::Robot;
 use crate::surface::SurfacePoint;
@@ -178,10 +178,10 @@ impl StaticObstacleSampler {
             samples.restart();
         }
         let count = samples.all.len();
-        let mut travelled = crate::posterior::tempering::Travelled::default();
+        let mut travelled = Travelled::default();
         pool.install(|| {
-            let work = |start: usize, part: All<'_>| {
-                for (k, hypothesis) in part.0.iter_mut().enumerate() {
+            let work = |start: usize, hypotheses: &mut [Hypothesis]| {
+                for (k, hypothesis) in hypotheses.iter_mut().enumerate() {
                     if started {
                         let number = start + k;
                         let (link, place) = places[number * places.len() / count];
@@ -195,10 +195,10 @@ impl StaticObstacleSampler {
                     }
                 }
             };
-            course.for_each(All(&mut samples.all), 0, &work);
+            course.for_each(&mut samples.all[..], 0, &work);
             travelled = samples.travel(&path, tempering, random.fork(1), course);
         });
-        let squared = |measurement: &super::measurements::Measurement| 0.5 * measurement.target.squared;
+        let squared = |measurement: &Measurement| 0.5 * measurement.target.squared;
         let without = squared(self.measurements.newest()) - self.measurements.dropped().map_or(0.0, squared);
         self.evidence += travelled.log_evidence + without;
         self.say(event, travelled.effective, travelled.log_evidence + without);
@@ -217,19 +217,6 @@ impl StaticObstacleSampler {
         found.residual = (misfit / rows as f64).sqrt();
         found.explained = misfit <= GRANTED * GRANTED * upper_limit(rows.saturating_sub(FITTED));
         found.estimate.ambiguous |= !found.explained || poses < LEAST_POSES;
-    }
-}
-
-struct All<'a>(&'a mut [Hypothesis]);
-
-impl Pieces for All<'_> {
-    fn count(&self) -> usize {
-        self.0.len()
-    }
-
-    fn split(self, middle: usize) -> (Self, Self) {
-        let (left, right) = self.0.split_at_mut(middle);
-        (All(left), All(right))
     }
 }
 
