@@ -83,6 +83,7 @@ def made(robot: cs.Robot) -> list[object]:
     contacts = cs.ContactIsolator(robot, torque_threshold=0.5, samples=50)
     contact_map = cs.ContactMap(robot, samples=50)
     particle_filter = cs.ContactParticleFilter(robot, particles=20)
+    sampler = cs.StaticObstacleSampler(robot, particles=20, window=5)
     report = monitor.update(q, np.zeros(7), np.ones(7))
     return [
         robot,
@@ -92,6 +93,7 @@ def made(robot: cs.Robot) -> list[object]:
         contacts,
         contact_map,
         particle_filter,
+        sampler,
         cs.MomentumObserver(robot, dt=1e-3),
         cs.LoadCompensator(robot, [sensor]),
         cs.Calibration.of_description(robot),

@@ -38,17 +38,19 @@ def test_arrays_in_place_of_words_are_refused_by_name(odd, tmp_path):
         cs.read_log(tmp_path / "log.csv", robot, rate="fast")
 
 
-@pytest.mark.parametrize("name", ["monitor", "filter", "map", "isolator"])
+@pytest.mark.parametrize("name", ["monitor", "filter", "sampler", "map", "isolator"])
 def test_two_threads_on_one_object_get_answers_or_typed_errors(name):
     robot = cs.Robot.named("iiwa14")
     q, torque = np.full(7, 0.5), np.full(7, 3.0)
     monitor = cs.ContactMonitor(robot, dt=1e-3)
     particle_filter = cs.ContactParticleFilter(robot, particles=2000)
+    sampler = cs.StaticObstacleSampler(robot, particles=2000)
     contact_map = cs.ContactMap(robot, samples=2000)
     isolator = cs.ContactIsolator(robot, torque_threshold=0.5)
     call = {
         "monitor": lambda: monitor.update(q, torque, torque),
         "filter": lambda: particle_filter.update(q, torque),
+        "sampler": lambda: sampler.update(q, torque),
         "map": lambda: contact_map.evaluate(q, torque),
         "isolator": lambda: isolator.isolate(q, torque),
     }[name]

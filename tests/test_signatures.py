@@ -84,6 +84,13 @@ SIGNATURES = {
     "torque_threshold=0.2, noise=None, calibration=None",
     "ContactParticleFilter.update": "q, tau_ext, *, time=None",
     "ContactParticleFilter.reset": "",
+    "StaticObstacleSampler": "robot, *, particles=10_000, models='obstacle', window=40, "
+    "forgetting_time=None, moves=2, "
+    "measurement='normal', friction=0.5, links=None, seed=0, force_range=(1, 100), "
+    "stiffness_range=(3e2, 3e4), radius_range=(5e-3, 1.0), threads=1, torque_noise=0.02, "
+    "relative_noise=0.03, torque_threshold=0.2, noise=None, calibration=None",
+    "StaticObstacleSampler.update": "q, tau_ext, *, time=None",
+    "StaticObstacleSampler.reset": "",
     "ContactClassifier": "robot, *, dt, prior=None, intended_prior=0.26",
     "ContactClassifier.update": "q, v, report",
     "ContactClassifier.reset": "",
@@ -220,6 +227,8 @@ def test_the_defaults_are_those_in_use():
     plain, given = made("ContactParticleFilter")
     assert plain.options == given.options
     assert plain.options["particles"] == 10_000
+    plain, given = made("StaticObstacleSampler")
+    assert plain.options == given.options
     for name, required, readable in (
         ("MomentumObserver", {"dt": 1e-3}, ["gain"]),
         (

@@ -2107,6 +2107,128 @@ class ContactParticleFilter:
         """The particles after the last update, one row each; a read-only copy."""
 
 @final
+class StaticObstacleSampler:
+    """Finds one contact anywhere on a robot from all joint torques that were measured of it (algorithm C3).
+
+    Where `ContactParticleFilter` forgets what earlier motions taught, each particle here is an obstacle that stays where it is
+    for good, and predicts the torques of a whole window of poses. Particles are taken from one measurement to the next by
+    tempered sequential Monte Carlo (Del Moral, Doucet and Jasra 2006). An update takes some milliseconds with 10,000 particles,
+    and up to some tenths of a second where particles are drawn anew. Noise that is greater than stated is learnt from what is
+    left over. One thread at a time may use it.
+
+    Args:
+        robot: The robot.
+        particles: How many.
+        models: What the contact may be with, one name or several: "obstacle" (round, stays where it is), "person" (the point
+            stays on the link, the force changes as it likes), "both" (the point stays on the link, and a spring ties it to
+            where it was in the world). Of several, `model_probabilities` says which explains the torques.
+        window: Poses whose torques are kept, 2 to 1000.
+        forgetting_time: Time after which a measurement counts for a part in e of what it did when it was new [s], so that
+            an obstacle that creeps is followed. None for obstacles that stay.
+        moves: Moves of each particle in an update at most where the window is full, 1 to 1000; more where it is not, for the
+            same work.
+        measurement: "normal" (frictionless) or "friction_cone": forces across the normal up to `friction` of it,
+            integrated out.
+        friction: Coefficient of friction of the cone.
+        links: Names of the links to look on; None for all that move and have a surface.
+        seed: A whole number. Same seed, same answer, for any number of `threads`.
+        force_range: Least and greatest force at the first touch [N].
+        stiffness_range: Least and greatest stiffness [N/m].
+        radius_range: Least and greatest radius of the obstacle's curvature [m].
+        threads: How many threads share an update.
+        torque_noise: Standard deviation of the torque at rest, scalar or `(nv,)` [Nm; N for sliding joints].
+        relative_noise: Standard deviation relative to the torque.
+        torque_threshold: Below it on every joint there is no contact, scalar or `(nv,)` [Nm; N for sliding joints]. By
+            default three standard deviations at rest where these are more; with `noise` always these.
+        noise: A `NoiseModel` in place of `torque_noise` and `relative_noise`.
+        calibration: A `Calibration` of this robot, whose noise takes the place of `noise`.
+
+    Raises:
+        InputError: Names the argument.
+        MemoryError: The particles do not fit into memory.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> sampler = cs.StaticObstacleSampler(robot, particles=500, models=("obstacle", "person"), seed=1)
+        >>> sampler.update(np.full(7, 0.4), [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0]).event
+        'started'
+        >>> round(sum(sampler.model_probabilities.values()), 9)
+        1.0
+    """
+
+    def __new__(
+        cls,
+        robot: Robot,
+        *,
+        particles: int = 10000,
+        models: Literal["obstacle", "person", "both"] | Iterable[str] = "obstacle",
+        window: int = 40,
+        forgetting_time: float | None = None,
+        moves: int = 2,
+        measurement: Literal["normal", "friction_cone"] = "normal",
+        friction: float = 0.5,
+        links: Iterable[str] | None = None,
+        seed: int = 0,
+        force_range: ArrayLike = (1, 100),
+        stiffness_range: ArrayLike = (300.0, 30000.0),
+        radius_range: ArrayLike = (0.005, 1.0),
+        threads: int = 1,
+        torque_noise: ArrayLike = 0.02,
+        relative_noise: float = 0.03,
+        torque_threshold: ArrayLike = 0.2,
+        noise: NoiseModel | None = None,
+        calibration: Calibration | None = None,
+    ) -> Self: ...
+    @property
+    def robot(self) -> Robot:
+        """The robot."""
+    @property
+    def options(self) -> dict[str, Any]:
+        """The keyword arguments in use, by name; `StaticObstacleSampler(robot, **options)` makes an equal sampler.
+
+        A new dict at every access. `noise` stands in it where it was given, otherwise `torque_noise` and
+        `relative_noise` do. Vectors are `(nv,)` or one number for all, as given.
+        """
+    def update(self, q: ArrayLike, tau_ext: ArrayLike, *, time: float | None = None) -> ContactEstimate:
+        """Takes in a configuration and the external torque measured there.
+
+        The first call that feels a contact spreads the particles over the surface. A pose that hardly differs from the last
+        one takes its place in the window. Other Python threads run meanwhile. With many
+        particles Ctrl-C ends the call early; `estimate` then has what was found, and later calls go on from there.
+
+        Args:
+            q: Configuration, `(nq,)`.
+            tau_ext: External torque, `(nv,)` [Nm; N for sliding joints and a base's linear part]: what `MomentumObserver`
+                gives, or `g(q) - tau` where the robot holds still.
+            time: Of the measurement [s], which must be given where there is a `forgetting_time`, and never less than at the
+                last update. The estimate hands it on; None for the number of updates.
+
+        Returns:
+            What the particles say.
+
+        Raises:
+            InputError: Names the argument; the sampler is then unchanged.
+        """
+    @property
+    def estimate(self) -> ContactEstimate:
+        """What the particles said at the last update; no contact before the first one."""
+    def reset(self) -> None:
+        """Forgets all updates."""
+    @property
+    def model_probabilities(self) -> dict[str, float]:
+        """Probability of each of `models`, by name; all zero without a contact. A new dict at every access."""
+    @property
+    def log_evidence(self) -> float:
+        """How many times as likely all torques are under one of the models as without a contact, its natural logarithm.
+
+        Two samplers that were given the same measurements are compared by it.
+        """
+    @property
+    def particles(self) -> Particles:
+        """The particles after the last update, one row each; a read-only copy."""
+
+@final
 class Particles:
     """A copy of the particles, one row each; all arrays are read-only.
 

@@ -1,41 +1,15 @@
 //! Arguments of `ContactParticleFilter` that take more than a line to read, and what is said of them.
 
-use contactsense::particle::{FilterOptions, Schedule};
+use contactsense::particle::Schedule;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 
 use crate::arguments::{number_if_any, shown, whole};
 use crate::arrays::Vector;
 use crate::errors::{input, refused};
-use crate::noise::{values, PyNoiseModel};
 
-/// Keyword arguments that make a filter with these options; without those that are choices.
-pub fn used_options<'py>(py: Python<'py>, options: &FilterOptions) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    dict.set_item("particles", options.particles)?;
-    dict.set_item("links", options.links.clone())?;
-    dict.set_item("seed", options.seed)?;
-    for (name, [least, greatest]) in [
-        ("force_range", options.force_range),
-        ("stiffness_range", options.stiffness_range),
-        ("radius_range", options.radius_range),
-    ] {
-        dict.set_item(name, (least, greatest))?;
-    }
-    dict.set_item("schedule", schedule(py, &options.schedule)?)?;
-    dict.set_item("threads", options.threads)?;
-    if let Some(noise) = &options.noise {
-        dict.set_item("noise", Bound::new(py, PyNoiseModel(noise.clone()))?)?;
-    } else {
-        dict.set_item("torque_noise", values(py, &options.torque_noise)?)?;
-        dict.set_item("relative_noise", options.relative_noise)?;
-    }
-    let threshold = options.stated_threshold().map(|threshold| values(py, &threshold)).transpose()?;
-    dict.set_item("torque_threshold", threshold)?;
-    Ok(dict)
-}
-
-fn schedule<'py>(py: Python<'py>, schedule: &Schedule) -> PyResult<Bound<'py, PyAny>> {
+/// The argument `schedule` that makes this one.
+pub fn used_schedule<'py>(py: Python<'py>, schedule: &Schedule) -> PyResult<Bound<'py, PyAny>> {
     let Schedule::Explicit { sharpness, point_noise, force_noise, stiffness_noise, updates } = schedule
     else {
         return Ok("adaptive".into_pyobject(py)?.into_any());

@@ -1,56 +1,26 @@
-//! `ContactParticleFilter` and its `Particles`.
+//! `ContactParticleFilter`.
 
-use std::sync::atomic::Ordering;
-use std::sync::mpsc::{channel, RecvTimeoutError};
 use std::sync::{Arc, Mutex, MutexGuard};
-use std::time::Duration;
 
-use contactsense::particle::{
-    ContactParticleFilter, FilterEstimate, FilterOptions, ForceModel, Likelihood, Motion,
-};
+use contactsense::particle::{ContactParticleFilter, FilterOptions, Likelihood, Motion};
 use contactsense::robot::LinkIndex;
-use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arguments::{sole, whole, Number};
-use crate::arrays::{scalar_or_vector, Vector};
-use crate::calibration::noise_of;
+use crate::arguments::{sole, Number};
+use crate::arrays::Vector;
 use crate::errors::{input, to_python};
 use crate::estimate::PyContactEstimate;
-use crate::filter_options::{read_schedule, used_options, Choice};
+use crate::filter_options::{read_schedule, used_schedule, Choice};
 use crate::names::Names;
-use crate::pickle::arrays_alone;
-use crate::returned::{from_rows, numbers, read_only};
+use crate::particles::{Particles, Row};
 use crate::robot::PyRobot;
 use crate::robot_argument::robot;
-use crate::sensor::names;
+use crate::search_arguments::SearchArguments;
+use crate::signals::with_signals;
 
-/// A copy of the particles, one row each; all arrays are read-only.
-///
-/// Frozen; can be pickled and copied.
-///
-/// Example:
-///     >>> import contactsense as cs, numpy as np
-///     >>> particle_filter = cs.ContactParticleFilter(cs.Robot.named("iiwa14"), particles=500)
-///     >>> estimate = particle_filter.update(np.full(7, 0.4), [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])
-///     >>> particle_filter.particles.point.shape
-///     (500, 3)
-#[pyclass(frozen, get_all, module = "contactsense")]
-pub struct Particles {
-    /// Index into `robot.link_names`, `(n,)`.
-    link: Py<PyArray1<i64>>,
-    /// Points on the surface, `(n, 3)`, world frame [m].
-    point: Py<PyArray2<f64>>,
-    /// Outward unit normals there, `(n, 3)`, world frame.
-    normal: Py<PyArray2<f64>>,
-    /// Force along the inward normal, `(n,)` [N].
-    force: Py<PyArray1<f64>>,
-    /// Stiffness of the contact, `(n,)` [N/m].
-    stiffness: Py<PyArray1<f64>>,
-    /// Weights, `(n,)`, which sum to one.
-    weight: Py<PyArray1<f64>>,
-}
+/// From so many particles on an update may take a tenth of a second and more, and Ctrl-C is looked for meanwhile.
+const LONG: usize = 200_000;
 
 /// Finds one contact anywhere on a robot from joint torques, by particles on its surface (Bimbo 2019).
 ///
@@ -142,9 +112,23 @@ impl PyContactParticleFilter {
         calibration: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let py = robot.py();
-        let cone = ForceModel::FrictionCone(friction.map_or(FRICTION, |friction| friction.0));
-        cone.check().map_err(|error| to_python(py, error))?;
-        let mut options = FilterOptions {
+        let given = SearchArguments {
+            particles,
+            measurement: &measurement,
+            friction: friction.map(|friction| friction.0),
+            links,
+            seed,
+            force_range,
+            stiffness_range,
+            radius_range,
+            threads,
+            torque_noise,
+            relative_noise: relative_noise.map(|noise| noise.0),
+            torque_threshold,
+            noise,
+            calibration,
+        };
+        let options = FilterOptions {
             motion: motion.among(
                 py,
                 "motion",
@@ -154,62 +138,18 @@ impl PyContactParticleFilter {
                     ("fixed_in_world", Motion::FixedInWorld),
                 ],
             )?,
-            force_model: measurement.among(
-                py,
-                "measurement",
-                &[("normal", ForceModel::Normal), ("friction_cone", cone)],
-            )?,
             likelihood: likelihood.among(
                 py,
                 "likelihood",
                 &[("gaussian", Likelihood::Gaussian), ("exponential", Likelihood::Exponential)],
             )?,
-            links: links.map(|links| names("links", "links", links)).transpose()?,
-            ..FilterOptions::default()
+            schedule: read_schedule(py, schedule)?,
+            ..given.options(&robot)?
         };
-        if let Some(particles) = particles {
-            options.particles = whole("particles", particles, 10_000_000)? as usize;
-        }
-        if let Some(seed) = seed {
-            options.seed = whole("seed", seed, u64::MAX)?;
-        }
-        if let Some(threads) = threads {
-            options.threads = whole("threads", threads, 256)? as usize;
-        }
-        for (name, object, range) in [
-            ("force_range", force_range, &mut options.force_range),
-            ("stiffness_range", stiffness_range, &mut options.stiffness_range),
-            ("radius_range", radius_range, &mut options.radius_range),
-        ] {
-            if let Some(object) = object {
-                *range = Vector::new(name, object)?.fixed::<2>(py, name)?;
-            }
-        }
-        if (noise.is_some() || calibration.is_some()) && (torque_noise.is_some() || relative_noise.is_some())
-        {
-            return Err(input(
-                py,
-                "noise: give it (or calibration) or torque_noise and relative_noise, not both".into(),
-            ));
-        }
-        options.noise = noise_of(&robot, noise, calibration)?;
-        if let Some(noise) = torque_noise {
-            options.torque_noise = scalar_or_vector("torque_noise", noise)?;
-        }
-        if let Some(noise) = relative_noise {
-            options.relative_noise = noise.0;
-        }
-        if let Some(threshold) = torque_threshold {
-            options.torque_threshold = Some(scalar_or_vector("torque_threshold", threshold)?);
-        }
-        options.schedule = read_schedule(py, schedule)?;
-        let kept = used_options(py, &options)?;
-        for (name, choice) in
-            [("motion", &motion), ("measurement", &measurement), ("likelihood", &likelihood)]
-        {
-            kept.set_item(name, &choice.given)?;
-        }
-        kept.set_item("friction", friction.map_or(FRICTION, |friction| friction.0))?;
+        let kept = given.used(py, &options)?;
+        kept.set_item("schedule", used_schedule(py, &options.schedule)?)?;
+        kept.set_item("motion", &motion.given)?;
+        kept.set_item("likelihood", &likelihood.given)?;
         let filter = ContactParticleFilter::new(robot.get().0.clone(), options);
         let filter = filter.map_err(|error| to_python(py, error))?;
         Ok(Self {
@@ -270,7 +210,8 @@ impl PyContactParticleFilter {
         let estimate = if filter.particles().len() < LONG {
             py.detach(|| filter.update(&q, &tau_ext).cloned())
         } else {
-            update_with_signals(py, filter, &q, &tau_ext)?
+            let stop = filter.stop();
+            with_signals(py, &stop, || filter.update(&q, &tau_ext).cloned())?
         };
         let found = estimate.map_err(|error| to_python(py, error))?;
         let time = time.map_or(found.updates as f64, |time| time.0);
@@ -288,21 +229,15 @@ impl PyContactParticleFilter {
     fn particles(&self, py: Python<'_>) -> PyResult<Particles> {
         let filter = self.sole(py)?;
         let columns = filter.particles();
-        let touchable = self.robot.get().0.touchable_links();
-        let number =
-            |link: u32| touchable.iter().position(|l| l.get() == link as usize).map_or(-1, |k| k as i64);
-        let count = columns.len();
-        let points = (0..count).map(|k| filter.point(k).into());
-        let normals = (0..count).map(|k| filter.normal(k).into());
-        Ok(Particles {
-            link: read_only(PyArray1::from_iter(py, columns.link.iter().map(|&link| number(link)))).unbind(),
-            point: read_only(from_rows::<3>(py, points)?).unbind(),
-            normal: read_only(from_rows::<3>(py, normals)?).unbind(),
-            force: read_only(PyArray1::from_iter(py, columns.force.iter().map(|force| force.max(0.0))))
-                .unbind(),
-            stiffness: numbers(py, &columns.stiffness).unbind(),
-            weight: numbers(py, filter.weights()).unbind(),
-        })
+        let rows = (0..columns.len()).map(|k| Row {
+            link: columns.link[k] as usize,
+            point: filter.point(k).into(),
+            normal: filter.normal(k).into(),
+            force: columns.force[k].max(0.0),
+            stiffness: columns.stiffness[k],
+            weight: filter.weights()[k],
+        });
+        Particles::of(py, self.robot.get(), rows)
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -314,47 +249,3 @@ impl PyContactParticleFilter {
         ))
     }
 }
-
-/// Default of the friction cone's coefficient.
-const FRICTION: f64 = 0.5;
-/// From so many particles on an update may take a tenth of a second and more, and Ctrl-C is looked for meanwhile.
-const LONG: usize = 200_000;
-/// Time from one look to the next.
-const LOOK: Duration = Duration::from_millis(50);
-
-/// An update on another thread, while this one looks for signals; what a signal's handler raises stops it.
-fn update_with_signals(
-    py: Python<'_>,
-    filter: &mut ContactParticleFilter,
-    q: &[f64],
-    tau_ext: &[f64],
-) -> PyResult<contactsense::Result<FilterEstimate>> {
-    let stop = filter.stop();
-    let (updated, raised) = py.detach(|| {
-        let (done, waiting) = channel();
-        std::thread::scope(|scope| {
-            let work = scope.spawn(move || {
-                let updated = filter.update(q, tau_ext).cloned();
-                // Nobody waits any more only where this thread's parent has panicked.
-                let _ = done.send(());
-                updated
-            });
-            let mut raised = None;
-            while matches!(waiting.recv_timeout(LOOK), Err(RecvTimeoutError::Timeout)) {
-                if let Err(error) = Python::attach(|py| py.check_signals()) {
-                    stop.store(true, Ordering::Relaxed);
-                    raised.get_or_insert(error);
-                }
-            }
-            (work.join(), raised)
-        })
-    });
-    // The update may have ended just before it was to be stopped.
-    stop.store(false, Ordering::Relaxed);
-    match raised {
-        Some(error) => Err(error),
-        None => Ok(updated.unwrap_or_else(|panic| std::panic::resume_unwind(panic))),
-    }
-}
-
-arrays_alone!(Particles, "Particles", link, point, normal, force, stiffness, weight);

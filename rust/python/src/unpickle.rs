@@ -18,7 +18,7 @@ use crate::isolation::PyIsolation;
 use crate::monitor_payload::PyPayloadProposal;
 use crate::motion::PyMotion;
 use crate::noise::PyNoiseModel;
-use crate::particle::Particles;
+use crate::particles::Particles;
 use crate::pickle::VERSION;
 use crate::report::PyContactReport;
 use crate::sensor::PyForceTorqueSensor;

@@ -37,6 +37,7 @@ pub use estimate::{Event, FilterEstimate};
 pub use filter::ContactParticleFilter;
 pub(crate) use instant::Instant;
 pub(crate) use motion::signed;
+pub(crate) use options::whole;
 pub use options::{FilterOptions, Likelihood, Motion};
 pub(crate) use rejuvenation::tangent;
 pub use schedule::Schedule;

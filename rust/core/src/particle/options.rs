@@ -193,7 +193,8 @@ impl FilterOptions {
     }
 }
 
-fn whole(name: &'static str, value: usize, range: RangeInclusive<usize>) -> Result<()> {
+/// Refuses what is not in the range.
+pub(crate) fn whole(name: &'static str, value: usize, range: RangeInclusive<usize>) -> Result<()> {
     if range.contains(&value) {
         return Ok(());
     }

@@ -30,13 +30,27 @@ pub(crate) struct Logs {
 
 impl Logs {
     /// At a share of the way.
-    fn at(&self, share: f64) -> f64 {
+    pub fn at(&self, share: f64) -> f64 {
         // At the start a density of zero at the end counts for nothing.
         if share == 0.0 {
             self.start
         } else {
             self.start + share * self.added
         }
+    }
+}
+
+/// A sample is wanted whose logarithm of the density at a share of the way is greater than the least.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Wanted {
+    pub share: f64,
+    pub least: f64,
+}
+
+impl Wanted {
+    /// False also where a density is no number.
+    pub fn takes(&self, logs: Logs) -> bool {
+        logs.at(self.share) > self.least
     }
 }
 
@@ -48,9 +62,17 @@ pub(crate) trait Path: Sync {
     /// The densities at a sample.
     fn logs(&self, sample: &Self::Sample) -> Logs;
 
-    /// Another sample near one, as likely to be proposed from there as the other way round; none where there is none.
-    /// It may use the random numbers 0 to 62 of the stream from `first` on.
-    fn propose(&self, sample: &Self::Sample, random: &Stream, first: u64) -> Option<Self::Sample>;
+    /// Another sample near one, as likely to be proposed from there as the other way round; none where there is none, and it
+    /// may be none where it is not `wanted`, which saves the work of knowing its densities. The proposal may depend on the `others`
+    /// that are about there, and use the random numbers 0 to 62 of the stream from `first` on.
+    fn propose(
+        &self,
+        sample: &Self::Sample,
+        others: &[Self::Sample],
+        wanted: Wanted,
+        random: &Stream,
+        first: u64,
+    ) -> Option<Self::Sample>;
 }
 
 /// How samples are drawn anew.
@@ -58,10 +80,10 @@ pub(crate) trait Path: Sync {
 pub(crate) struct Tempering {
     /// A step of the way leaves this share of the samples effective, and samples are drawn anew below it.
     pub effective_share: f64,
-    /// Moves of each sample after they are drawn anew.
+    /// Moves of each sample each time they are drawn anew.
     pub moves: usize,
-    /// Steps of one way at most: the last one goes to the end whatever it leaves.
-    pub most_steps: usize,
+    /// Moves of each sample on one way at most: after these it goes to the end, whatever that leaves.
+    pub most_moves: usize,
 }
 
 /// What a way showed.
@@ -112,7 +134,8 @@ impl<S: Clone + Send + Sync> Samples<S> {
         self.evidence = Evidence::of(count);
     }
 
-    /// Takes the samples along a way. A density that is no number is one of zero; where all are zero the samples stay.
+    /// Takes the samples along a way. A density that is no number is one of zero; where all are zero the samples stay. Once the
+    /// course is stopped no sample is moved any more: the weights are right, but fewer samples are effective.
     pub fn travel<P: Path<Sample = S>>(
         &mut self,
         path: &P,
@@ -122,11 +145,11 @@ impl<S: Clone + Send + Sync> Samples<S> {
     ) -> Travelled {
         let count = self.all.len();
         let mut travelled = Travelled::default();
-        let (mut share, mut tried, mut accepted) = (0.0, 0_usize, 0_usize);
+        let (mut share, mut left, mut accepted) = (0.0, tempering.most_moves, 0_usize);
         while share < 1.0 {
             travelled.steps += 1;
-            let last = travelled.steps >= tempering.most_steps;
-            let next = if last { 1.0 } else { self.next_share(path, share, tempering.effective_share) };
+            let go_on = || left > 0 && !course.stop.load(Ordering::Relaxed);
+            let next = if go_on() { self.next_share(path, share, tempering.effective_share) } else { 1.0 };
             for (log, sample) in self.log_weights.iter_mut().zip(&self.all) {
                 let logs = path.logs(sample);
                 *log += logs.at(next) - logs.at(share);
@@ -135,13 +158,15 @@ impl<S: Clone + Send + Sync> Samples<S> {
             travelled.log_evidence += self.evidence.take_in(&weighed);
             travelled.effective = weighed.effective;
             share = next;
-            if weighed.effective >= tempering.effective_share * count as f64 && share >= 1.0 {
-                break;
+            let ample = share >= 1.0 && weighed.effective >= tempering.effective_share * count as f64;
+            if !ample && go_on() {
+                let moves = tempering.moves.min(left);
+                let stream = random.fork(travelled.steps as u64);
+                accepted += self.draw_anew(path, share, moves, stream, course);
+                left -= moves;
             }
-            let stream = random.fork(travelled.steps as u64);
-            accepted += self.draw_anew(path, share, tempering.moves, stream, course);
-            tried += count * tempering.moves;
         }
+        let tried = (tempering.most_moves - left) * count;
         travelled.accepted = if tried > 0 { accepted as f64 / tried as f64 } else { 0.0 };
         travelled
     }
@@ -173,18 +198,19 @@ impl<S: Clone + Send + Sync> Samples<S> {
         for (sample, parent) in self.spare.iter_mut().zip(&self.parents) {
             sample.clone_from(&self.all[*parent as usize]);
         }
-        std::mem::swap(&mut self.all, &mut self.spare);
+        self.all.clone_from_slice(&self.spare);
         self.restart();
+        let others = &self.spare[..];
         let accepted = AtomicUsize::new(0);
         let stream = random.fork(1);
         let work = |start: usize, samples: &mut [S]| {
             for (k, sample) in samples.iter_mut().enumerate() {
                 for turn in 0..moves {
                     let first = ((start + k) * moves + turn) as u64 * DRAWS;
-                    let Some(other) = path.propose(sample, &stream, first) else { continue };
-                    let change = path.logs(&other).at(share) - path.logs(sample).at(share);
-                    // False also where a density is no number.
-                    if stream.uniform(first + DECISION).ln() < change {
+                    let least = path.logs(sample).at(share) + stream.uniform(first + DECISION).ln();
+                    let wanted = Wanted { share, least };
+                    let other = path.propose(sample, others, wanted, &stream, first);
+                    if let Some(other) = other.filter(|other| wanted.takes(path.logs(other))) {
                         *sample = other;
                         accepted.fetch_add(1, Ordering::Relaxed);
                     }
@@ -202,7 +228,7 @@ mod tests {
 
     use super::*;
 
-    const TEMPERING: Tempering = Tempering { effective_share: 0.5, moves: 4, most_steps: 100 };
+    const TEMPERING: Tempering = Tempering { effective_share: 0.5, moves: 4, most_moves: 400 };
 
     /// From a Gaussian prior to its product with a Gaussian likelihood, in two dimensions.
     struct Gaussian {
@@ -221,7 +247,14 @@ mod tests {
             Logs { start, added }
         }
 
-        fn propose(&self, sample: &[f64; 2], random: &Stream, first: u64) -> Option<[f64; 2]> {
+        fn propose(
+            &self,
+            sample: &[f64; 2],
+            _: &[[f64; 2]],
+            _: Wanted,
+            random: &Stream,
+            first: u64,
+        ) -> Option<[f64; 2]> {
             let steps = random.normals(first);
             Some(std::array::from_fn(|k| sample[k] + 1.5 * self.noise[k] * steps[k]))
         }
@@ -295,7 +328,14 @@ mod tests {
                 };
                 Logs { start: 0.0, added }
             }
-            fn propose(&self, sample: &f64, random: &Stream, first: u64) -> Option<f64> {
+            fn propose(
+                &self,
+                sample: &f64,
+                _: &[f64],
+                _: Wanted,
+                random: &Stream,
+                first: u64,
+            ) -> Option<f64> {
                 (random.uniform(first) < 0.9).then(|| sample + 0.1 * random.normals(first + 1)[0])
             }
         }
@@ -322,7 +362,14 @@ mod tests {
             fn logs(&self, _: &[f64; 2]) -> Logs {
                 Logs { start: 0.0, added: f64::NEG_INFINITY }
             }
-            fn propose(&self, _: &[f64; 2], _: &Stream, _: u64) -> Option<[f64; 2]> {
+            fn propose(
+                &self,
+                _: &[f64; 2],
+                _: &[[f64; 2]],
+                _: Wanted,
+                _: &Stream,
+                _: u64,
+            ) -> Option<[f64; 2]> {
                 None
             }
         }

@@ -10,9 +10,9 @@ pub(super) struct Measurement {
     /// One a link of the robot.
     pub links: Vec<Frame>,
     pub target: Target,
-    /// Whether it counted before the newest one came, and counts now.
-    pub before: bool,
-    pub now: bool,
+    /// How much it counted before the newest one came, and counts now: from zero to one.
+    pub before: f64,
+    pub now: f64,
 }
 
 /// A window of measurements.
@@ -21,7 +21,13 @@ pub(super) struct Measurements {
     all: Vec<Measurement>,
     /// Places of those that count before or now, in the order of time.
     order: Vec<usize>,
+    /// The same, the newest first and then from far apart to near.
+    scattered: Vec<usize>,
     dropped: Option<usize>,
+    /// Share that is kept of the measurements before the newest one.
+    pub kept: f64,
+    /// How many count before the newest one came, and now, with their shares.
+    pub counts: [f64; 2],
     /// Where links were at the first touch, one a link.
     pub first: Vec<Pose>,
     most: usize,
@@ -32,12 +38,15 @@ impl Measurements {
     pub fn new(instant: &Instant, most: usize) -> Self {
         let links = instant.frames.links.clone();
         let first = links.iter().map(|frame| frame.pose).collect();
-        let one = Measurement { links, target: instant.target.clone(), before: false, now: false };
+        let one = Measurement { links, target: instant.target.clone(), before: 0.0, now: 0.0 };
         // One more than count: for that which no longer does.
         Measurements {
             all: vec![one; most + 1],
             order: Vec::with_capacity(most + 1),
+            scattered: Vec::with_capacity(most + 1),
             dropped: None,
+            kept: 1.0,
+            counts: [0.0; 2],
             first,
             most,
         }
@@ -46,20 +55,22 @@ impl Measurements {
     /// Forgets all: another contact begins.
     pub fn clear(&mut self) {
         self.order.clear();
+        self.scattered.clear();
         self.dropped = None;
         for measurement in &mut self.all {
-            (measurement.before, measurement.now) = (false, false);
+            (measurement.before, measurement.now) = (0.0, 0.0);
         }
     }
 
-    /// Those that count before or now, in the order of time.
-    pub fn iter(&self) -> impl DoubleEndedIterator<Item = &Measurement> {
-        self.order.iter().map(|place| &self.all[*place])
+    /// Those that count before or now, the newest first and then from far apart to near: a hypothesis that does not fit shows
+    /// it early.
+    pub fn scattered(&self) -> impl Iterator<Item = &Measurement> {
+        self.scattered.iter().map(|place| &self.all[*place])
     }
 
     /// How many count now.
     pub fn len(&self) -> usize {
-        self.iter().filter(|measurement| measurement.now).count()
+        self.scattered().filter(|measurement| measurement.now > 0.0).count()
     }
 
     /// The newest one; before any, what stands in its place.
@@ -73,8 +84,10 @@ impl Measurements {
     }
 
     /// Takes in the present pose: in place of the newest one if that is the same pose, and of the oldest where there are too many.
-    pub fn take_in(&mut self, instant: &Instant) {
-        self.settle();
+    /// What is `kept` of those before is a share from zero to one.
+    pub fn take_in(&mut self, instant: &Instant, kept: f64) {
+        self.settle(kept);
+        self.kept = kept;
         if self.order.is_empty() {
             for &link in &instant.frames.wanted {
                 self.first[link] = *instant.pose(link);
@@ -94,7 +107,7 @@ impl Measurements {
             None
         };
         if let Some(dropped) = self.dropped {
-            self.all[dropped].now = false;
+            self.all[dropped].now = 0.0;
         }
         let free = (0..self.all.len()).find(|place| !self.order.contains(place)).unwrap_or(0);
         let measurement = &mut self.all[free];
@@ -102,17 +115,34 @@ impl Measurements {
             measurement.links[link].copy(&instant.frames.links[link]);
         }
         measurement.target.copy(&instant.target, &instant.frames.wanted);
-        (measurement.before, measurement.now) = (false, true);
+        (measurement.before, measurement.now) = (0.0, 1.0);
         self.order.push(free);
+        self.scatter();
+        let sum = |share: fn(&Measurement) -> f64| self.scattered().map(share).sum();
+        self.counts = [sum(|measurement| measurement.before), sum(|measurement| measurement.now)];
     }
 
-    /// What counts now counts from here on as before.
-    fn settle(&mut self) {
+    fn scatter(&mut self) {
+        let count = self.order.len();
+        self.scattered.clear();
+        self.scattered.extend(self.order.last());
+        let mut stride = count.next_power_of_two();
+        while stride > 0 {
+            // Steps back from the newest.
+            let steps = (stride..count).step_by(2 * stride);
+            self.scattered.extend(steps.map(|back| self.order[count - 1 - back]));
+            stride /= 2;
+        }
+    }
+
+    /// What counts now counts from here on as before, and of it a share as now.
+    fn settle(&mut self, kept: f64) {
         if let Some(dropped) = self.dropped.take() {
             self.order.retain(|place| *place != dropped);
         }
         for measurement in &mut self.all {
             measurement.before = measurement.now;
+            measurement.now *= kept;
         }
     }
 }

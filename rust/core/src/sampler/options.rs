@@ -1,13 +1,18 @@
 //! Options of the sampler.
 
 use crate::error::{Error, Result};
-use crate::particle::FilterOptions;
+use crate::particle::{whole, FilterOptions};
 use crate::robot::Robot;
 use crate::torque::{ForceModel, NoiseModel};
+
+use super::hypothesis::ContactModel;
 
 /// Measurements that a window holds at least and at most: one pose tells little, and each costs time and memory.
 const LEAST_WINDOW: usize = 2;
 const MOST_WINDOW: usize = 1000;
+
+/// More moves only take time.
+const MOST_MOVES: usize = 1000;
 
 /// Options of a [`StaticObstacleSampler`](super::StaticObstacleSampler).
 ///
@@ -17,17 +22,22 @@ const MOST_WINDOW: usize = 1000;
 /// use contactsense::robot::Robot;
 /// use contactsense::sampler::{SamplerOptions, StaticObstacleSampler};
 ///
-/// let options = SamplerOptions { hypotheses: 500, window: 20, ..SamplerOptions::default() };
+/// let options = SamplerOptions { particles: 500, window: 20, ..SamplerOptions::default() };
 /// let sampler = StaticObstacleSampler::new(Arc::new(Robot::example_arm()), &options)?;
 /// assert_eq!(sampler.weights().len(), 500);
 /// # Ok::<(), contactsense::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct SamplerOptions {
-    /// How many hypotheses.
-    pub hypotheses: usize,
+    /// How many particles: hypotheses of a contact.
+    pub particles: usize,
+    /// What the contact may be with.
+    pub models: Vec<ContactModel>,
     /// Poses whose torques are kept, from 2 to 1000.
     pub window: usize,
+    /// Time after which a measurement counts for a part in e of what it did when it was new (s): obstacles that creep are followed.
+    /// None for obstacles that stay.
+    pub forgetting_time: Option<f64>,
     /// Which forces a contact can exert.
     pub force_model: ForceModel,
     /// Names of the links to look on; all that move and have a surface by default.
@@ -48,7 +58,7 @@ pub struct SamplerOptions {
     pub torque_threshold: Option<Vec<f64>>,
     /// Errors of the torques, in place of `torque_noise` and `relative_noise`.
     pub noise: Option<NoiseModel>,
-    /// Moves of each hypothesis after they are drawn anew.
+    /// Moves of each particle in an update at most, where the window is full; more where it is not, for the same work.
     pub moves: usize,
     /// How many threads share an update.
     pub threads: usize,
@@ -56,36 +66,49 @@ pub struct SamplerOptions {
 
 impl Default for SamplerOptions {
     fn default() -> Self {
-        let filter = FilterOptions::default();
+        Self::like(&FilterOptions::default())
+    }
+}
+
+impl SamplerOptions {
+    /// With all that a filter is told in the same words, the others by default.
+    pub fn like(filter: &FilterOptions) -> Self {
+        let filter = filter.clone();
         SamplerOptions {
-            hypotheses: 4000,
+            particles: filter.particles,
+            models: vec![ContactModel::Obstacle],
             window: 40,
+            forgetting_time: None,
             force_model: filter.force_model,
-            links: None,
+            links: filter.links,
             seed: filter.seed,
             force_range: filter.force_range,
             stiffness_range: filter.stiffness_range,
             radius_range: filter.radius_range,
             torque_noise: filter.torque_noise,
             relative_noise: filter.relative_noise,
-            torque_threshold: None,
-            noise: None,
-            moves: 6,
+            torque_threshold: filter.torque_threshold,
+            noise: filter.noise,
+            moves: 2,
             threads: filter.threads,
         }
     }
-}
 
-impl SamplerOptions {
     /// What a filter is told in the same words; it is checked with the links that are looked on.
     pub(super) fn check(&self, robot: &Robot) -> Result<(FilterOptions, Vec<usize>)> {
-        if !(LEAST_WINDOW..=MOST_WINDOW).contains(&self.window) {
-            let text =
-                format!("must be a whole number from {LEAST_WINDOW} to {MOST_WINDOW}, got {}", self.window);
-            return Err(Error::input("window", text));
+        for (name, value, range) in
+            [("window", self.window, LEAST_WINDOW..=MOST_WINDOW), ("moves", self.moves, 1..=MOST_MOVES)]
+        {
+            whole(name, value, range)?;
+        }
+        if let Some(time) = self.forgetting_time.filter(|time| !(*time > 0.0 && time.is_finite())) {
+            return Err(Error::input("forgetting_time", format!("must be positive (s), got {time}")));
+        }
+        if self.models.is_empty() {
+            return Err(Error::input("models", "must name at least one model of a contact"));
         }
         let filter = FilterOptions {
-            particles: self.hypotheses,
+            particles: self.particles,
             force_model: self.force_model,
             links: self.links.clone(),
             seed: self.seed,
@@ -99,12 +122,7 @@ impl SamplerOptions {
             threads: self.threads,
             ..FilterOptions::default()
         };
-        let wanted = filter.check(robot).map_err(|error| match error {
-            Error::Input { argument, problem } if argument == "particles" => {
-                Error::input("hypotheses", problem)
-            }
-            other => other,
-        })?;
+        let wanted = filter.check(robot)?;
         Ok((filter, wanted))
     }
 }

@@ -3,10 +3,11 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
 
-use super::hypothesis::Hypothesis;
-use super::measurements::{Measurement, Measurements};
+use super::hypothesis::{Claim, ContactModel, Hypothesis};
+use super::measurements::Measurements;
 use super::options::SamplerOptions;
-use super::path::ObstaclePath;
+use super::particle::Particle;
+use super::path::ContactPath;
 use super::sums::Prior;
 use crate::detection::Gate;
 use crate::error::{Error, Result};
@@ -15,16 +16,17 @@ use crate::math::random::Stream;
 use crate::particle::{exposed_places, Event, FilterEstimate, FilterOptions, Instant};
 use crate::posterior::parallel::{Course, Pool};
 use crate::posterior::tempering::{Samples, Tempering, Travelled};
-use crate::posterior::{Clusters, MOST_MODES};
-use crate::robot::Robot;
+use crate::posterior::{Clusters, ContactSamples, MOST_MODES};
+use crate::robot::{LinkIndex, Robot};
 use crate::surface::SurfacePoint;
 
 /// A contact ends below this share of the thresholds at which it begins.
 const RELEASE: f64 = 1.0 / 3.0;
 /// Share of hypotheses that stay effective from step to step.
 const EFFECTIVE: f64 = 0.5;
-/// Steps from one measurement to the next at most; the last goes to the end.
-const MOST_STEPS: usize = 12;
+/// Moves of a particle each time particles are drawn anew, where there are few poses, at most; and how often that is done at least.
+const MOST_MOVES: usize = 6;
+const LEAST_STEPS: usize = 4;
 /// Errors of torque may be so many times as large as is stated.
 const GRANTED: f64 = 3.0;
 /// A place, a radius, a force and a stiffness.
@@ -45,10 +47,10 @@ const LEAST_POSES: usize = 4;
 /// use contactsense::sampler::{SamplerOptions, StaticObstacleSampler};
 ///
 /// let robot = Arc::new(Robot::example_arm());
-/// let options = SamplerOptions { hypotheses: 500, ..SamplerOptions::default() };
+/// let options = SamplerOptions { particles: 500, ..SamplerOptions::default() };
 /// let mut sampler = StaticObstacleSampler::new(robot, &options)?;
-/// assert!(sampler.update(&[0.4; 7], &[0.0; 7])?.estimate.contact.is_none());
-/// let found = sampler.update(&[0.4; 7], &[1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])?;
+/// assert!(sampler.update(&[0.4; 7], &[0.0; 7], None)?.estimate.contact.is_none());
+/// let found = sampler.update(&[0.4; 7], &[1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0], None)?;
 /// assert!(found.estimate.contact.is_some() && found.estimate.ambiguous);
 /// # Ok::<(), contactsense::Error>(())
 /// ```
@@ -56,7 +58,12 @@ const LEAST_POSES: usize = 4;
 pub struct StaticObstacleSampler {
     robot: Arc<Robot>,
     options: FilterOptions,
-    tempering: Tempering,
+    models: Vec<ContactModel>,
+    forgetting_time: Option<f64>,
+    /// Of the last update (s).
+    time: Option<f64>,
+    moves: usize,
+    window: usize,
     stop: Arc<AtomicBool>,
     pool: Pool,
     gate: Gate,
@@ -83,16 +90,20 @@ impl StaticObstacleSampler {
         let instant = Instant::new(&robot, noise, wanted);
         let measurements = Measurements::new(&instant, options.window);
         let (link, place) = places[0];
-        let path = path(&robot, &measurements, &filter);
-        let first = path.make(link, place, path.log_radius[0]);
+        let claim = Claim { model: options.models[0], link, place, log_radius: filter.radius_range[0].ln() };
+        let first = path(&robot, &measurements, &filter, &options.models).make(claim, None);
         let first =
             first.ok_or_else(|| Error::input("robot", "has no surface where anything could touch it"))?;
         Ok(StaticObstacleSampler {
-            samples: Samples::new(options.hypotheses, first)?,
-            clusters: Clusters::new(options.hypotheses, robot.links().len())?,
-            tempering: Tempering { effective_share: EFFECTIVE, moves: options.moves, most_steps: MOST_STEPS },
+            samples: Samples::new(options.particles, first)?,
+            clusters: Clusters::new(options.particles, robot.links().len())?,
+            moves: options.moves,
+            window: options.window,
             gate: Gate::with_hysteresis(threshold, RELEASE),
             pool: Pool::new(filter.threads)?,
+            models: options.models.clone(),
+            forgetting_time: options.forgetting_time,
+            time: None,
             stop: Arc::default(),
             evidence: 0.0,
             options: filter,
@@ -104,14 +115,17 @@ impl StaticObstacleSampler {
         })
     }
 
-    /// Takes in a configuration `q` `(nq,)` and the external torque `tau_ext` `(nv,)` measured there, as
-    /// [`ContactParticleFilter::update`](crate::particle::ContactParticleFilter::update).
+    /// Takes in a configuration `q` `(nq,)` and the external torque `tau_ext` `(nv,)` measured there at a `time` (s), as
+    /// [`ContactParticleFilter::update`](crate::particle::ContactParticleFilter::update). The time is needed where measurements are
+    /// forgotten with it.
     ///
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) names the argument; the sampler is unchanged.
-    pub fn update(&mut self, q: &[f64], tau_ext: &[f64]) -> Result<&FilterEstimate> {
+    pub fn update(&mut self, q: &[f64], tau_ext: &[f64], time: Option<f64>) -> Result<&FilterEstimate> {
         self.robot.check_configuration(q)?;
         self.robot.check_tangent("tau_ext", tau_ext)?;
+        let kept = self.kept(time)?;
+        self.time = time;
         self.instant.update(&self.robot, q, tau_ext, true);
         let before = self.gate.any_on();
         let event = match (before, self.gate.update(tau_ext, 1.0)) {
@@ -122,19 +136,37 @@ impl StaticObstacleSampler {
         };
         match event {
             Event::None | Event::Lost => self.found.clear(event),
-            _ => self.follow(event),
+            _ => self.follow(event, kept),
         }
         self.found.updates += 1;
-        if self.stop.swap(false, Ordering::Relaxed) {
-            // What was done in part is of no use.
-            self.reset();
-            return Err(Error::Stopped);
-        }
+        self.stop.store(false, Ordering::Relaxed);
         Ok(&self.found)
     }
 
-    /// A flag that stops an update when another thread sets it, as
-    /// [`ContactParticleFilter::stop`](crate::particle::ContactParticleFilter::stop).
+    /// The share that is kept of what was measured before a time.
+    fn kept(&self, time: Option<f64>) -> Result<f64> {
+        let refuse = |problem: &str| Err(Error::input("time", problem));
+        let Some(now) = time else {
+            return match self.forgetting_time {
+                Some(_) => {
+                    refuse("must be given where measurements are forgotten with time (forgetting_time)")
+                }
+                None => Ok(1.0),
+            };
+        };
+        if !now.is_finite() {
+            return refuse("must be a finite number (s)");
+        }
+        let passed = self.time.map_or(0.0, |before| now - before);
+        match self.forgetting_time {
+            Some(_) if passed < 0.0 => refuse("must not be less than at the last update (s)"),
+            Some(forgetting) => Ok((-passed / forgetting).exp()),
+            None => Ok(1.0),
+        }
+    }
+
+    /// A flag that another thread sets to have an update end at once: it then returns what it has, with particles that are less
+    /// well moved.
     pub fn stop(&self) -> Arc<AtomicBool> {
         self.stop.clone()
     }
@@ -144,7 +176,17 @@ impl StaticObstacleSampler {
         self.gate.reset();
         self.measurements.clear();
         self.found.clear(Event::None);
-        (self.found.updates, self.evidence) = (0, 0.0);
+        (self.found.updates, self.evidence, self.time) = (0, 0.0, None);
+    }
+
+    /// Indices of the links that are looked on.
+    pub fn links(&self) -> &[usize] {
+        &self.instant.frames.wanted
+    }
+
+    /// Of the last update (s), if it was given.
+    pub fn time(&self) -> Option<f64> {
+        self.time
     }
 
     /// The last estimate.
@@ -152,28 +194,79 @@ impl StaticObstacleSampler {
         &self.found
     }
 
-    /// Weights of the hypotheses, which sum to one.
+    /// Weights of the particles, which sum to one.
     pub fn weights(&self) -> &[f64] {
         &self.samples.weights
     }
 
-    /// Logarithm of how many times as likely all torques of the contact are under one obstacle that stays as without a contact.
+    /// A particle at the newest pose: its model, and its contact in the world frame; none where there is none of that number.
+    pub fn particle(&self, k: usize) -> Option<Particle> {
+        let hypothesis = self.samples.all.get(k)?;
+        let link = hypothesis.claim.link as usize;
+        let pose = self.instant.pose(link);
+        let contact = self.samples.all.sample(k);
+        Some(Particle {
+            model: hypothesis.claim.model,
+            link: LinkIndex::new(link),
+            point: pose.transform_point(&contact.point),
+            normal: pose.rotation * contact.normal,
+            force: pose.rotation * contact.force,
+            stiffness: contact.stiffness,
+            weight: self.samples.weights[k],
+        })
+    }
+
+    /// The probability of a model of a contact; zero without a contact.
+    pub fn probability_of(&self, model: ContactModel) -> f64 {
+        if self.found.estimate.contact.is_none() {
+            return 0.0;
+        }
+        let own = |hypothesis: &Hypothesis| hypothesis.claim.model == model;
+        self.samples
+            .all
+            .iter()
+            .zip(&self.samples.weights)
+            .filter(|(hypothesis, _)| own(hypothesis))
+            .map(|(_, w)| w)
+            .sum()
+    }
+
+    /// Logarithm of how many times as likely all torques of the contact are under one of the models as without a contact.
     pub fn total_log_evidence(&self) -> f64 {
         self.evidence
     }
 
-    fn follow(&mut self, event: Event) {
+    fn follow(&mut self, event: Event, kept: f64) {
         let started = event == Event::Started;
         if started {
             self.measurements.clear();
             self.evidence = 0.0;
         }
-        self.measurements.take_in(&self.instant);
-        let Self { robot, options, measurements, samples, tempering, stop, pool, places, found, .. } = self;
+        self.measurements.take_in(&self.instant, kept);
+        let Self {
+            robot,
+            options,
+            models,
+            measurements,
+            samples,
+            moves,
+            window,
+            stop,
+            pool,
+            places,
+            found,
+            ..
+        } = self;
         let random = Stream::new(options.seed).fork(found.updates);
-        let path = path(robot, measurements, options);
-        let course = Course { threads: options.threads, stop };
-        let tempering = *tempering;
+        let path = path(robot, measurements, options, models);
+        let threads = options.threads;
+        // The less poses there are, the less work is a move.
+        let most_moves = *moves * *window / measurements.len().max(1);
+        let tempering = Tempering {
+            effective_share: EFFECTIVE,
+            moves: (most_moves / LEAST_STEPS).clamp(1, MOST_MOVES),
+            most_moves,
+        };
         if started {
             samples.restart();
         }
@@ -182,24 +275,31 @@ impl StaticObstacleSampler {
         pool.install(|| {
             let work = |start: usize, hypotheses: &mut [Hypothesis]| {
                 for (k, hypothesis) in hypotheses.iter_mut().enumerate() {
-                    if started {
-                        let number = start + k;
-                        let (link, place) = places[number * places.len() / count];
-                        let [least, greatest] = path.log_radius;
-                        let log_radius = least + (greatest - least) * random.uniform(number as u64);
-                        if let Some(made) = path.make(link, place, log_radius) {
-                            *hypothesis = made;
-                        }
-                    } else {
+                    if !started {
                         path.follow(hypothesis);
+                        continue;
+                    }
+                    let number = start + k;
+                    let (link, place) = places[number * places.len() / count];
+                    let [least, greatest] = path.log_radius;
+                    let log_radius = least + (greatest - least) * random.uniform(number as u64);
+                    let model = path.models[number % path.models.len()];
+                    let made = path.make(Claim { model, link, place, log_radius }, None);
+                    if let Some(made) = made {
+                        *hypothesis = made;
                     }
                 }
             };
-            course.for_each(&mut samples.all[..], 0, &work);
-            travelled = samples.travel(&path, tempering, random.fork(1), course);
+            // Each measurement is taken into all particles, whatever is to end.
+            let never = AtomicBool::new(false);
+            Course { threads, stop: &never }.for_each(&mut samples.all[..], 0, &work);
+            travelled = samples.travel(&path, tempering, random.fork(1), Course { threads, stop });
         });
-        let squared = |measurement: &Measurement| 0.5 * measurement.target.squared;
-        let without = squared(self.measurements.newest()) - self.measurements.dropped().map_or(0.0, squared);
+        let without: f64 = self
+            .measurements
+            .scattered()
+            .map(|measurement| 0.5 * (measurement.now - measurement.before) * measurement.target.squared)
+            .sum();
         self.evidence += travelled.log_evidence + without;
         self.say(event, travelled.effective, travelled.log_evidence + without);
     }
@@ -220,11 +320,21 @@ impl StaticObstacleSampler {
     }
 }
 
-fn path<'a>(robot: &'a Robot, measurements: &'a Measurements, options: &FilterOptions) -> ObstaclePath<'a> {
-    ObstaclePath {
+fn path<'a>(
+    robot: &'a Robot,
+    measurements: &'a Measurements,
+    options: &FilterOptions,
+    models: &'a [ContactModel],
+) -> ContactPath<'a> {
+    ContactPath {
         robot,
         measurements,
-        prior: Prior { force: options.force_range, stiffness: options.stiffness_range },
+        models,
+        prior: Prior {
+            force: options.force_range,
+            stiffness: options.stiffness_range,
+            torques: robot.nv() as f64,
+        },
         force_model: options.force_model,
         log_radius: options.radius_range.map(f64::ln),
     }

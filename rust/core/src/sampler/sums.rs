@@ -1,54 +1,73 @@
 //! What measurements say of the force at the first touch and the stiffness of a contact, and of the contact with both integrated out.
 
-use std::ops::{AddAssign, SubAssign};
+use std::f64::consts::TAU;
 
 use crate::torque::NormalFit;
 
 /// Force and stiffness are not told apart where the determinant of their precision is this share of the product of its diagonal.
 const SINGULAR: f64 = 1e-12;
 
-/// Sums over measurements, each with a force `F + K e`: `F` the force at the first touch, `K` the stiffness, and `e` how much deeper
-/// the obstacle is in the link than then (m).
+/// Sums over measurements, each with a force `F a + K b`: `F` the force at the first touch, `K` the stiffness, `a` a direction and `b`
+/// how far the spring of the contact is pressed in more than then (m).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Sums {
-    /// Of the gain of a unit force, times `e` and its square.
+    /// Inner products of the torques of `a` and `b`, each joint over its noise: `aa`, `ab`, `bb`.
     gain: [f64; 3],
-    /// Of the product with the measured torque, times `e`.
+    /// Theirs with the measured torques.
     product: [f64; 2],
-    /// Of the squared torques, and of twice what the freedom of friction costs.
+    /// Of the squared torques.
     target: f64,
+    /// What the freedom of forces that are integrated out already costs, twice as a log-likelihood.
+    cost: f64,
     count: f64,
 }
 
 impl Sums {
-    /// Of one measurement.
-    pub fn of(fit: &NormalFit, deeper: f64) -> Self {
+    /// Of one measurement with a force along the normal, which is `deeper` than at the first touch (m).
+    pub fn along(fit: &NormalFit, deeper: f64) -> Self {
         Sums {
             gain: [fit.gain, fit.gain * deeper, fit.gain * deeper * deeper],
             product: [fit.product, fit.product * deeper],
-            target: fit.target + 2.0 * fit.penalty,
+            target: fit.target,
+            cost: 2.0 * fit.penalty,
             count: 1.0,
         }
     }
 
-    fn each(&mut self, other: &Sums, f: impl Fn(&mut f64, f64)) {
-        self.gain.iter_mut().zip(other.gain).for_each(|(a, b)| f(a, b));
-        self.product.iter_mut().zip(other.product).for_each(|(a, b)| f(a, b));
-        f(&mut self.target, other.target);
-        f(&mut self.count, other.count);
+    /// Of one measurement, from the Gram matrix of the torques of `a` and `b`, the products with the measured ones, and their
+    /// squared norm.
+    pub fn of_two(gain: [f64; 3], product: [f64; 2], target: f64) -> Self {
+        Sums { gain, product, target, cost: 0.0, count: 1.0 }
+    }
+
+    /// Of one measurement with a force of its own along the normal, which is integrated out; and the likeliest one (N).
+    pub fn free(fit: &NormalFit, prior: &Prior) -> (Self, f64) {
+        let force = prior.force_of(fit);
+        let target = (fit.target + force * (force * fit.gain - 2.0 * fit.product)).max(0.0);
+        let width = width(force, prior.force);
+        let cost = 2.0 * fit.penalty + (1.0 + fit.gain * width * width / TAU).ln();
+        (Sums { target, cost, count: 1.0, ..Sums::default() }, force)
+    }
+
+    /// Adds so many times another.
+    pub fn add(&mut self, share: f64, other: &Sums) {
+        self.gain.iter_mut().zip(other.gain).for_each(|(sum, x)| *sum += share * x);
+        self.product.iter_mut().zip(other.product).for_each(|(sum, x)| *sum += share * x);
+        self.target += share * other.target;
+        self.cost += share * other.cost;
+        self.count += share * other.count;
+    }
+
+    /// So many times itself.
+    pub fn scale(&mut self, share: f64) {
+        let all = *self;
+        self.add(share - 1.0, &all);
     }
 }
 
-impl AddAssign<&Sums> for Sums {
-    fn add_assign(&mut self, other: &Sums) {
-        self.each(other, |a, b| *a += b);
-    }
-}
-
-impl SubAssign<&Sums> for Sums {
-    fn sub_assign(&mut self, other: &Sums) {
-        self.each(other, |a, b| *a -= b);
-    }
+/// Of a number in a range with a uniform logarithm: one over its density.
+fn width(value: f64, [least, greatest]: [f64; 2]) -> f64 {
+    value * (greatest / least).ln()
 }
 
 /// What is known beforehand of a contact: its force at the first touch (N) and its stiffness (N/m), each with a uniform logarithm.
@@ -56,6 +75,8 @@ impl SubAssign<&Sums> for Sums {
 pub(super) struct Prior {
     pub force: [f64; 2],
     pub stiffness: [f64; 2],
+    /// Torques that one measurement has.
+    pub torques: f64,
 }
 
 /// A contact with force and stiffness integrated out.
@@ -77,13 +98,42 @@ impl Prior {
         if sums.count == 0.0 {
             return Marginal { log: 0.0, ..best };
         }
-        let width = |value: f64, [least, greatest]: [f64; 2]| value * (greatest / least).ln();
         let (force, stiffness) = (width(best.force, self.force), width(best.stiffness, self.stiffness));
-        let [gain, gain_e, gain_ee] = sums.gain.map(|gain| gain / std::f64::consts::TAU);
+        let noise = self.noise(best.misfit, sums.count);
+        let [gain, gain_e, gain_ee] = sums.gain.map(|gain| gain / (TAU * noise));
         // Of one plus the precision in units of the widths: at least one but for rounding.
         let determinant = (1.0 + gain * force * force) * (1.0 + gain_ee * stiffness * stiffness)
             - (gain_e * force * stiffness).powi(2);
-        Marginal { log: -0.5 * (best.misfit + determinant.max(1.0).ln()), ..best }
+        Marginal {
+            log: -0.5 * (self.weighed(best.misfit, sums.count) + sums.cost + determinant.max(1.0).ln()),
+            ..best
+        }
+    }
+
+    /// The log-likelihood at most, whatever other measurements say, of which there are so many in all: each can only lessen it.
+    pub fn most(&self, sums: &Sums, count: f64) -> f64 {
+        -0.5 * (self.weighed(self.best(sums).misfit, count) + sums.cost)
+    }
+
+    /// By how much the variance of the torques' noise is greater than stated: what explains the misfit best, and never less than one.
+    fn noise(&self, misfit: f64, count: f64) -> f64 {
+        (misfit / (count * self.torques)).max(1.0)
+    }
+
+    /// The misfit with noise of that variance, twice as a log-likelihood with its sign turned.
+    fn weighed(&self, misfit: f64, count: f64) -> f64 {
+        let noise = self.noise(misfit, count);
+        misfit / noise + count * self.torques * noise.ln()
+    }
+
+    /// The force within its range that explains one measurement best (N).
+    pub fn force_of(&self, fit: &NormalFit) -> f64 {
+        let [least, greatest] = self.force;
+        if fit.gain > 0.0 {
+            (fit.product / fit.gain).clamp(least, greatest)
+        } else {
+            least
+        }
     }
 
     /// The force and stiffness within their ranges that explain the torques best: those that do anywhere, or the best of an edge.
@@ -132,7 +182,7 @@ impl Prior {
 mod tests {
     use super::*;
 
-    const PRIOR: Prior = Prior { force: [1.0, 100.0], stiffness: [3e2, 3e4] };
+    const PRIOR: Prior = Prior { force: [1.0, 100.0], stiffness: [3e2, 3e4], torques: 7.0 };
 
     fn measured(force: f64, stiffness: f64) -> Sums {
         let mut sums = Sums::default();
@@ -145,7 +195,7 @@ mod tests {
                 target: gain * torque * torque + 2.0,
                 penalty: 0.0,
             };
-            sums += &Sums::of(&fit, deeper);
+            sums.add(1.0, &Sums::along(&fit, deeper));
         }
         sums
     }
@@ -178,9 +228,9 @@ mod tests {
         let fit = NormalFit { gain: 3.0, product: 2.0, target: 7.0, penalty: 0.1 };
         let mut sums = measured(10.0, 1000.0);
         let before = PRIOR.integrate(&sums);
-        sums += &Sums::of(&fit, 1e-3);
+        sums.add(1.0, &Sums::along(&fit, 1e-3));
         assert!(PRIOR.integrate(&sums).log < before.log);
-        sums -= &Sums::of(&fit, 1e-3);
+        sums.add(-1.0, &Sums::along(&fit, 1e-3));
         assert!((PRIOR.integrate(&sums).log - before.log).abs() < 1e-9);
         assert_eq!(PRIOR.integrate(&Sums::default()).log, 0.0);
     }

@@ -50,7 +50,7 @@ impl Scene {
 
 fn sampler(scene: &Scene, threads: usize) -> StaticObstacleSampler {
     let options = SamplerOptions {
-        hypotheses: 3000,
+        particles: 3000,
         force_model: ForceModel::FrictionCone(0.0),
         threads,
         ..SamplerOptions::default()
@@ -68,7 +68,7 @@ fn an_obstacle_that_stays_is_found_on_outer_links() {
             let q = scene.pose(tick);
             let Some((torque, point)) = scene.at(&q) else { continue };
             truth = point;
-            sampler.update(&q, &torque).expect("valid input");
+            sampler.update(&q, &torque, None).expect("valid input");
         }
         let found = sampler.estimate();
         let contact = found.estimate.contact.expect("a contact");
@@ -85,13 +85,15 @@ fn what_ends_is_forgotten_and_bad_input_changes_nothing() {
     let mut sampler = sampler(&scene, 1);
     let q = scene.pose(0);
     let (torque, _) = scene.at(&q).expect("a contact");
-    assert_eq!(sampler.update(&q, &torque).expect("valid").event, Event::Started);
+    assert_eq!(sampler.update(&q, &torque, None).expect("valid").event, Event::Started);
     let kept = sampler.estimate().estimate.contact.expect("a contact").point;
-    assert!(sampler.update(&q[1..], &torque).is_err() && sampler.update(&q, &[f64::NAN; 7]).is_err());
+    assert!(
+        sampler.update(&q[1..], &torque, None).is_err() && sampler.update(&q, &[f64::NAN; 7], None).is_err()
+    );
     assert_eq!(sampler.estimate().estimate.contact.expect("a contact").point, kept);
-    assert_eq!(sampler.update(&q, &[0.0; 7]).expect("valid").event, Event::Lost);
+    assert_eq!(sampler.update(&q, &[0.0; 7], None).expect("valid").event, Event::Lost);
     assert!(sampler.estimate().estimate.contact.is_none());
-    assert_eq!(sampler.update(&q, &torque).expect("valid").event, Event::Started);
+    assert_eq!(sampler.update(&q, &torque, None).expect("valid").event, Event::Started);
 }
 
 #[test]
@@ -103,7 +105,7 @@ fn answers_are_the_same_on_any_number_of_threads() {
         for tick in 0..6 {
             let q = scene.pose(tick);
             let Some((torque, _)) = scene.at(&q) else { continue };
-            sampler.update(&q, &torque).expect("valid input");
+            sampler.update(&q, &torque, None).expect("valid input");
         }
         (sampler.weights().to_vec(), sampler.estimate().estimate.contact.expect("a contact").point)
     };
@@ -114,7 +116,7 @@ fn answers_are_the_same_on_any_number_of_threads() {
 fn a_window_that_is_full_forgets_the_oldest() {
     let scene = Scene::new(5, 0.2);
     let options = SamplerOptions {
-        hypotheses: 300,
+        particles: 300,
         window: 5,
         force_model: ForceModel::FrictionCone(0.0),
         ..SamplerOptions::default()
@@ -123,13 +125,13 @@ fn a_window_that_is_full_forgets_the_oldest() {
     for tick in 0..20 {
         let q = scene.pose(tick);
         let Some((torque, _)) = scene.at(&q) else { continue };
-        sampler.update(&q, &torque).expect("valid input");
+        sampler.update(&q, &torque, None).expect("valid input");
         assert!(sampler.measurements.len() <= 5);
     }
     // What was added and taken away is what is there.
-    let path = path(&sampler.robot, &sampler.measurements, &sampler.options);
+    let path = path(&sampler.robot, &sampler.measurements, &sampler.options, &sampler.models);
     for hypothesis in sampler.samples.all.iter().take(50) {
-        let anew = path.make(hypothesis.link, hypothesis.place, hypothesis.log_radius).expect("a surface");
+        let anew = path.make(hypothesis.claim, None).expect("a surface");
         let error = (anew.marginal.log - hypothesis.marginal.log).abs();
         assert!(error < 1e-6 * (1.0 + anew.marginal.log.abs()), "{error} {}", anew.marginal.log);
     }

@@ -1,0 +1,63 @@
+//! `Particles`: those of a filter or a sampler.
+
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+
+use crate::pickle::arrays_alone;
+use crate::returned::{from_rows, numbers, read_only};
+use crate::robot::PyRobot;
+
+/// A copy of the particles, one row each; all arrays are read-only.
+///
+/// Frozen; can be pickled and copied.
+///
+/// Example:
+///     >>> import contactsense as cs, numpy as np
+///     >>> particle_filter = cs.ContactParticleFilter(cs.Robot.named("iiwa14"), particles=500)
+///     >>> estimate = particle_filter.update(np.full(7, 0.4), [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])
+///     >>> particle_filter.particles.point.shape
+///     (500, 3)
+#[pyclass(frozen, get_all, module = "contactsense")]
+pub struct Particles {
+    /// Index into `robot.link_names`, `(n,)`.
+    link: Py<PyArray1<i64>>,
+    /// Points on the surface, `(n, 3)`, world frame [m].
+    point: Py<PyArray2<f64>>,
+    /// Outward unit normals there, `(n, 3)`, world frame.
+    normal: Py<PyArray2<f64>>,
+    /// Force along the inward normal, `(n,)` [N].
+    force: Py<PyArray1<f64>>,
+    /// Stiffness of the contact, `(n,)` [N/m].
+    stiffness: Py<PyArray1<f64>>,
+    /// Weights, `(n,)`, which sum to one.
+    weight: Py<PyArray1<f64>>,
+}
+
+/// One particle; the link by its number in the core, force along the inward normal.
+pub struct Row {
+    pub link: usize,
+    pub point: [f64; 3],
+    pub normal: [f64; 3],
+    pub force: f64,
+    pub stiffness: f64,
+    pub weight: f64,
+}
+
+impl Particles {
+    pub fn of(py: Python<'_>, robot: &PyRobot, rows: impl Iterator<Item = Row>) -> PyResult<Self> {
+        let rows: Vec<Row> = rows.collect();
+        let touchable = robot.0.touchable_links();
+        let number = |link: usize| touchable.iter().position(|l| l.get() == link).map_or(-1, |k| k as i64);
+        let column = |f: fn(&Row) -> f64| numbers(py, &rows.iter().map(f).collect::<Vec<_>>()).unbind();
+        Ok(Particles {
+            link: read_only(PyArray1::from_iter(py, rows.iter().map(|row| number(row.link)))).unbind(),
+            point: read_only(from_rows::<3>(py, rows.iter().map(|row| row.point))?).unbind(),
+            normal: read_only(from_rows::<3>(py, rows.iter().map(|row| row.normal))?).unbind(),
+            force: column(|row| row.force),
+            stiffness: column(|row| row.stiffness),
+            weight: column(|row| row.weight),
+        })
+    }
+}
+
+arrays_alone!(Particles, "Particles", link, point, normal, force, stiffness, weight);
