@@ -17,6 +17,7 @@ from .example_robots import robot_of
 from .harness import AsJson, add_study, print_json
 from .identifiability.options import Options as IdentifiabilityOptions
 from .real_arm.options import Options as RealArmOptions
+from .recovery.options import Options as RecoveryOptions
 from .vorndamme2017.options import Options as VorndammeOptions
 
 app = typer.Typer(
@@ -115,4 +116,10 @@ add_study(
     "contact_classes",
     "Contacts of simulated arms told apart: clamped, transient or sustained; intended or accidental.",
     ContactClassesOptions,
+)
+add_study(
+    app,
+    "recovery",
+    "What calibration recovers of the known errors and payloads of simulated arms, and how certain it is.",
+    RecoveryOptions,
 )
