@@ -14,6 +14,7 @@ use contactsense::observer::MomentumObserver;
 use contactsense::particle::{ContactParticleFilter, FilterOptions};
 use contactsense::reaction::{Reaction, ReactionLimits};
 use contactsense::robot::Robot;
+use contactsense::sampler::{ContactModel, SamplerOptions, StaticObstacleSampler};
 use contactsense::sensor::{ForceTorqueSensor, LoadCompensator};
 use contactsense::{ExternalSample, Sample};
 use nalgebra::Vector3;
@@ -326,6 +327,33 @@ fn an_update_of_particles_allocates_nothing_on_one_thread() {
         let allowed = if threads == 1 { 0 } else { 2 };
         let made = allocations(work);
         assert!(made <= allowed, "{threads} threads: {made} allocations");
+        assert!(felt > 30, "the contact was felt: {felt}");
+    }
+}
+
+#[test]
+fn an_update_of_a_sampler_allocates_nothing_on_one_thread() {
+    let _alone = ALONE.lock().expect("the other test has not failed");
+    let robot = common::meshed_arm();
+    let run = common::ball_run(&robot, "arm_4", 40);
+    let idle = vec![0.0; robot.nv()];
+    for threads in [1, 2] {
+        let models = ContactModel::ALL.to_vec();
+        let options =
+            SamplerOptions { particles: 2000, window: 10, models, threads, ..SamplerOptions::default() };
+        let mut sampler = StaticObstacleSampler::new(robot.clone(), &options).expect("valid options");
+        sampler.update(&run.poses[0], &run.torques[0], None).expect("valid input");
+        let mut felt = 0;
+        let work = || {
+            for (q, torque) in run.poses.iter().zip(&run.torques) {
+                let found = sampler.update(q, torque, None).expect("valid input");
+                felt += usize::from(found.estimate.contact.is_some());
+            }
+            sampler.update(&run.poses[0], &idle, None).expect("valid input");
+        };
+        let made = allocations(work);
+        // The queue of the threads takes a block of memory every sixty times or so that work is shared.
+        assert!(made <= if threads == 1 { 0 } else { 20 }, "{threads} threads: {made} allocations");
         assert!(felt > 30, "the contact was felt: {felt}");
     }
 }
