@@ -96,6 +96,7 @@ LAYERS = {
 }
 ABOVE = (
     "test_calibration_recovery",
+    "test_memory_study",
     "test_cli",
     "test_contact_classes_study",
     "test_demo",

@@ -16,6 +16,7 @@ from .contact_classes.options import Options as ContactClassesOptions
 from .example_robots import robot_of
 from .harness import AsJson, add_study, print_json
 from .identifiability.options import Options as IdentifiabilityOptions
+from .memory.options import Options as MemoryOptions
 from .real_arm.options import Options as RealArmOptions
 from .recovery.options import Options as RecoveryOptions
 from .vorndamme2017.options import Options as VorndammeOptions
@@ -122,4 +123,10 @@ add_study(
     "recovery",
     "What calibration recovers of the known errors and payloads of simulated arms, and how certain it is.",
     RecoveryOptions,
+)
+add_study(
+    app,
+    "memory",
+    "Contacts on a moving arm, located by a sampler that remembers, by a particle filter and by a map.",
+    MemoryOptions,
 )

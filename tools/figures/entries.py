@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
-from . import contact_classes, demos, identifiability, long_studies, noisy_contacts, real_arm, studies
+from . import (
+    contact_classes,
+    demos,
+    identifiability,
+    long_studies,
+    memory,
+    noisy_contacts,
+    real_arm,
+    studies,
+)
 from .entry import Figure
 
 PYTHON = ("python", "-m")
@@ -169,6 +178,16 @@ FIGURES = (
         "docs/classification.md",
         reduce=contact_classes.reduce_ages,
         table=contact_classes.age_table,
+        long=True,
+    ),
+    Figure(
+        "memory",
+        "The sampler beside the particle filter and the map, after random motions against a sphere.",
+        (*STUDY, "memory", "--json", "--trials", "5"),
+        "Five trials a link, seed 0.",
+        "docs/memory.md",
+        reduce=memory.reduce,
+        table=memory.error_table,
         long=True,
     ),
     Figure(

@@ -33,17 +33,18 @@ def bimbo2019(raw: Raw) -> dict[str, Any]:
 
 
 def bimbo2019_table(result: Any) -> str:
-    """Mean and median error in cm, and the share of right links where it is not all."""
+    """A row an experiment and filter, a column a link."""
     links = list(next(iter(next(iter(result.values())).values())))
     header = ("", *(f"link {name[-1]}" if not number else name[-1] for number, name in enumerate(links)))
     rows = [
-        [label, *(_errors(result[experiment][kind][link]) for link in links)]
+        [label, *(errors(result[experiment][kind][link]) for link in links)]
         for experiment, kind, label in BIMBO_ROWS
     ]
     return table(header, rows)
 
 
-def _errors(score: Any) -> str:
+def errors(score: Any) -> str:
+    """Mean and median error in cm, and the share of right links where it is not all."""
     errors = f"{_centimetres(score['mean'])}/{_centimetres(score['median'])}"
     right = score["right_link"]
     return errors if right in (1.0, None) else f"{errors} {100 * right:.0f} %"

@@ -48,7 +48,7 @@ class Progress:
 def watch(options: Options, trial: Trial, shares: tuple[float, ...]) -> Progress:
     """A trial of the study again, with its experiment's first filter, seen at `shares` of the run."""
     arm, experiment = load_arm(options), BY_NAME[trial.experiment]
-    seed = trial_seed(options, trial.experiment, trial.link, trial.number)
+    seed = trial_seed(options.seed, trial.experiment, trial.link, trial.number)
     run = record(arm, experiment, trial.link, trial.number, seed)
     rows = {round(share * (len(run) - 1)) for share in shares}
     moments: list[Moment] = []

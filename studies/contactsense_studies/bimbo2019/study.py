@@ -91,7 +91,7 @@ def run(
 def _trial(item: Item) -> Trial:
     options, name, link, number = item
     arm, experiment = load_arm(options), BY_NAME[name]
-    seed = trial_seed(options, name, link, number)
+    seed = trial_seed(options.seed, name, link, number)
     try:
         recorded = record(arm, experiment, link, number, seed)
     except InputError:
@@ -100,7 +100,7 @@ def _trial(item: Item) -> Trial:
     return Trial(name, link, number, tuple(outcomes))
 
 
-def trial_seed(options: Options, experiment: str, link: str, number: int) -> int:
+def trial_seed(seed: int, experiment: str, link: str, number: int) -> int:
     """Every trial has its own."""
-    entropy = [options.seed, number, *f"{experiment}/{link}".encode()]
+    entropy = [seed, number, *f"{experiment}/{link}".encode()]
     return int(np.random.SeedSequence(entropy).generate_state(1)[0])

@@ -1,0 +1,1 @@
+"""Contacts on a moving arm, located by what forgets, what remembers, and what sees one pose."""

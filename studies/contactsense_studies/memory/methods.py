@@ -1,0 +1,65 @@
+"""What locates the contact of a recorded run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from contactsense import ContactMap, ContactParticleFilter, Robot, StaticObstacleSampler
+from contactsense.sim import ContactRun, TorqueNoise
+
+from ..bimbo2019.score import Outcome, judge
+
+# Noise of each external torque, of which nothing is said [%]: three are granted by default.
+NOISES = (0.0, 5.0, 10.0)
+# The most probable places that are weighed beside the best: so probable at least, and so near [m].
+PROBABLE, NEAR = 0.1, 0.02
+
+Update = Callable[[Any, Any], Any]
+
+
+@dataclass(frozen=True)
+class Method:
+    """A way to locate a contact, and each how many samples of a run it is fed."""
+
+    name: str
+    make: Callable[[Robot, int, int], Update]  # of robot, particles and seed
+    every: int = 1
+
+
+@dataclass(frozen=True)
+class Found:
+    """The end of one run."""
+
+    outcome: Outcome
+    near: bool  # a probable place is near the true one
+
+
+def _filter(robot: Robot, particles: int, seed: int) -> Update:
+    return ContactParticleFilter(robot, particles=particles, seed=seed).update
+
+
+def _sampler(robot: Robot, particles: int, seed: int) -> Update:
+    return StaticObstacleSampler(robot, particles=particles, seed=seed).update
+
+
+def _map(robot: Robot, particles: int, seed: int) -> Update:
+    return ContactMap(robot).evaluate
+
+
+METHODS = (Method("map", _map, every=5), Method("filter", _filter), Method("sampler", _sampler, every=4))
+
+
+def locate(robot: Robot, run: ContactRun, method: Method, noise: float, particles: int, seed: int) -> Found:
+    """Feeds the run to the end, with noise of so many per cent."""
+    update = method.make(robot, particles, seed)
+    torques = TorqueNoise(percent=noise, seed=seed)
+    for row, (q, torque) in enumerate(zip(run.q, run.external_torque, strict=True)):
+        measured = torques.measure(torque)
+        if row % method.every == 0:
+            estimate, last = update(q, measured), row
+    point = run.point[last]
+    places = [mode.point for mode in estimate.modes if mode.probability >= PROBABLE]
+    near = any(float(((place - point) ** 2).sum()) <= NEAR**2 for place in places)
+    return Found(judge(estimate, run.link[last], point, run.force[last]), near)

@@ -1,0 +1,34 @@
+"""What is run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from typer import Option
+
+from ..bimbo2019.options import Options as Runs
+from ..harness import check_counts
+
+
+@dataclass(frozen=True)
+class Options:
+    """Counts, seed, and the robot."""
+
+    robot: Annotated[str, Option(help="A packaged arm, or a URDF file.")] = "iiwa14"
+    package_dirs: Annotated[
+        tuple[str, ...], Option("--package-dir", help="Folder for `package://` names; may be repeated.")
+    ] = ()
+    links: Annotated[
+        tuple[str, ...], Option("--link", help="Link in contact; may be repeated (default: all that move).")
+    ] = ()
+    trials: Annotated[int, Option(help="Number of trials per link.")] = 20
+    particles: Annotated[int, Option(help="Number of particles of filter and sampler.")] = 10_000
+    seed: Annotated[int, Option(help="Seed of poses, points, motions, noise and particles.")] = 0
+
+    def __post_init__(self) -> None:
+        check_counts(self.seed, trials=self.trials, particles=self.particles)
+
+    def runs(self) -> Runs:
+        """Options of the recorded runs."""
+        return Runs(robot=self.robot, package_dirs=self.package_dirs, links=self.links)

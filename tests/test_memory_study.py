@@ -1,0 +1,54 @@
+"""The study of a sampler beside a filter and a map, on one short run of it."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install contactsense[sim]")
+
+from contactsense_studies.harness import save_pictures
+from contactsense_studies.memory.data import as_data
+from contactsense_studies.memory.methods import METHODS, NOISES
+from contactsense_studies.memory.options import Options
+from contactsense_studies.memory.plots import PICTURES
+from contactsense_studies.memory.report import print_study
+from contactsense_studies.memory.study import Study, run
+
+LINKS = ("iiwa_link_4", "iiwa_link_6")
+
+
+@pytest.fixture(scope="module")
+def study() -> Study:
+    return run(Options(links=LINKS, trials=1, particles=2000, seed=5), processes=1)
+
+
+def test_what_remembers_finds_the_point_whatever_the_noise(study: Study) -> None:
+    for link in LINKS:
+        for noise in NOISES:
+            (found,) = study.found("sampler", noise, link)
+            assert found.outcome.right
+            assert found.outcome.error < 0.01
+            assert found.near
+
+
+def test_one_pose_tells_less(study: Study) -> None:
+    errors = {
+        method.name: max(study.found(method.name, 0.0, link)[0].outcome.error for link in LINKS)
+        for method in METHODS
+    }
+    assert errors["sampler"] < 0.3 * errors["map"]
+
+
+def test_the_study_shows_what_it_found(study: Study, tmp_path: Path) -> None:
+    shown = io.StringIO()
+    print_study(study, Console(file=shown, width=100))
+    assert all(method.name in shown.getvalue() for method in METHODS)
+    data = as_data(study)
+    assert data["complete"]
+    assert len(data["scores"]) == len(LINKS) * len(METHODS) * len(NOISES) == len(data["trials"])
+    (picture,) = save_pictures(PICTURES, study, tmp_path)
+    assert picture.stat().st_size > 10_000
