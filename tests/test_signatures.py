@@ -54,6 +54,9 @@ SIGNATURES = {
     "NoiseModel.covariance": "robot, q, *, gain=50.0, dt=0.001",
     "NoiseModel.correlation_time": "robot, q, *, gain=50.0, dt=0.001",
     "exciting_motion": "robot, seconds, *, max_velocity=None, seed=0, dt=0.001, joints=None",
+    "next_motion": "robot, estimate, q, *, max_force, max_step, count=64, seed=0, particles=None, noise=None, "
+    "calibration=None, duration=0.5, dt=0.001",
+    "NextMotion.to_dict": "",
     "Motion.at": "time",
     "Motion.to_dict": "",
     "diagnose": "robot, q, v, tau, *, sensors=(), wrenches=None, time=None",

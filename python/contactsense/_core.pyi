@@ -20,6 +20,7 @@ __all__ = [
     "ContactEstimate",
     "ContactIsolator",
     "ContactMap",
+    "ContactMemory",
     "ContactMonitor",
     "ContactParticleFilter",
     "ContactReport",
@@ -37,6 +38,7 @@ __all__ = [
     "ModelError",
     "MomentumObserver",
     "Motion",
+    "NextMotion",
     "NoiseModel",
     "Particles",
     "Payload",
@@ -57,6 +59,7 @@ __all__ = [
     "diagnose",
     "exciting_motion",
     "identify_tool",
+    "next_motion",
 ]
 
 __version__: Final[str]
@@ -1061,7 +1064,7 @@ class Payload:
             Plain Python values: numbers, strings, and lists in place of arrays.
         """
 
-@final
+@disjoint_base
 class Motion:
     """A planned motion: where the robot is at each instant, `n` rows at equal distances of time. Read-only.
 
@@ -2663,6 +2666,81 @@ def _calibrate(
     torque_is_external: bool,
 ) -> Calibration:
     """From the columns of a log, each flat."""
+
+@final
+class NextMotion(Motion):
+    @property
+    def information(self) -> float: ...
+    @property
+    def spread_before(self) -> float: ...
+    @property
+    def spread_after(self) -> float: ...
+    @property
+    def force_range(self) -> NDArray[np.float64]: ...
+    @property
+    def candidates(self) -> int: ...
+    @property
+    def admissible(self) -> int: ...
+    @property
+    def reason(self) -> str: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+def next_motion(
+    robot: Robot,
+    estimate: ContactEstimate,
+    q: ArrayLike,
+    *,
+    max_force: float,
+    max_step: ArrayLike,
+    count: int = 64,
+    seed: int = 0,
+    particles: Particles | None = None,
+    noise: NoiseModel | None = None,
+    calibration: Calibration | None = None,
+    duration: float = 0.5,
+    dt: float = 0.001,
+) -> NextMotion: ...
+
+@disjoint_base
+class ContactMemory:
+    def __new__(
+        cls,
+        robot: Robot,
+        *,
+        resolution: float = 0.02,
+        prior: float = 0.5,
+        free_error: float = 0.01,
+        contact_error: float = 0.05,
+        max_voxels: int = 2_000_000,
+    ) -> Self: ...
+    @property
+    def robot(self) -> Robot: ...
+    @property
+    def resolution(self) -> float: ...
+    @property
+    def prior(self) -> float: ...
+    @property
+    def free_error(self) -> float: ...
+    @property
+    def contact_error(self) -> float: ...
+    @property
+    def max_voxels(self) -> int: ...
+    def add_free(self, q: ArrayLike) -> None: ...
+    def add_contact(
+        self, contact: ContactEstimate | Contact | tuple[ArrayLike, ArrayLike, ArrayLike]
+    ) -> None: ...
+    def probability(self, points: ArrayLike) -> NDArray[np.float64]: ...
+    def is_free(self, points: ArrayLike, *, below: float = 0.1) -> NDArray[np.bool_]: ...
+    def known(self, points: ArrayLike) -> NDArray[np.bool_]: ...
+    def points(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+    def boxes(
+        self, *, least: float = 0.5, most: float = 1.0
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+    def clear(self) -> None: ...
+    def _voxels(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+    def _set_voxels(self, indices: ArrayLike, log_odds: ArrayLike) -> None: ...
+    def __len__(self) -> int: ...
 
 def exciting_motion(
     robot: Robot,

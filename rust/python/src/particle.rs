@@ -39,17 +39,17 @@ use crate::sensor::names;
 #[pyclass(frozen, get_all, module = "contactsense")]
 pub struct Particles {
     /// Index into `robot.link_names`, `(n,)`.
-    link: Py<PyArray1<i64>>,
+    pub link: Py<PyArray1<i64>>,
     /// Points on the surface, `(n, 3)`, world frame [m].
-    point: Py<PyArray2<f64>>,
+    pub point: Py<PyArray2<f64>>,
     /// Outward unit normals there, `(n, 3)`, world frame.
-    normal: Py<PyArray2<f64>>,
+    pub normal: Py<PyArray2<f64>>,
     /// Force along the inward normal, `(n,)` [N].
-    force: Py<PyArray1<f64>>,
+    pub force: Py<PyArray1<f64>>,
     /// Stiffness of the contact, `(n,)` [N/m].
-    stiffness: Py<PyArray1<f64>>,
+    pub stiffness: Py<PyArray1<f64>>,
     /// Weights, `(n,)`, which sum to one.
-    weight: Py<PyArray1<f64>>,
+    pub weight: Py<PyArray1<f64>>,
 }
 
 /// Finds one contact anywhere on a robot from joint torques, by particles on its surface (Bimbo 2019).

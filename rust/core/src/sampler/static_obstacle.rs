@@ -125,6 +125,8 @@ impl StaticObstacleSampler {
             _ => self.follow(event),
         }
         self.found.updates += 1;
+        self.found.torque.clear();
+        self.found.torque.extend_from_slice(tau_ext);
         if self.stop.swap(false, Ordering::Relaxed) {
             // What was done in part is of no use.
             self.reset();
@@ -145,6 +147,7 @@ impl StaticObstacleSampler {
         self.measurements.clear();
         self.found.clear(Event::None);
         (self.found.updates, self.evidence) = (0, 0.0);
+        self.found.torque.clear();
     }
 
     /// The last estimate.
