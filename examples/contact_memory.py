@@ -1,4 +1,4 @@
-"""An arm without a camera learns where a wall is: from contacts, and from the space that it has moved through.
+"""An arm without a camera learns where a wall is: from contacts, and from the space that it moves through.
 
 A planner then asks which places are free, which are occupied, and of which nothing is known.
 """
@@ -15,7 +15,7 @@ memory = cs.ContactMemory(robot, resolution=0.03, prior=0.2)
 # Contact-free motion: the space that the body has swept is free.
 memory.add_free(np.linspace(robot.neutral(), [0.0, 0.4, 0.0, -1.0, 0.0, 0.6, 0.0], 15))
 
-# Contacts with the wall. On your robot they are contacts of a report, or estimates of a particle filter, one each.
+# Contacts with the wall. On your robot they are contacts of a report, or estimates of a particle filter.
 rng = np.random.default_rng(0)
 for _ in range(25):
     point = np.array([WALL, rng.uniform(-0.15, 0.15), rng.uniform(0.5, 0.8)]) + 0.005 * rng.normal(size=3)
@@ -32,4 +32,6 @@ print(f"{len(lower)} boxes for a planner")
 places = {"in the arm's way": [0.0, 0.0, 0.4], "never seen": [-0.6, 0.0, 0.5]}
 for name, place in places.items():
     free, known = memory.is_free([place])[0], memory.known([place])[0]
-    print(f"{name}: free {free}, known {known}, occupied with probability {memory.probability([place])[0]:.2f}")
+    print(
+        f"{name}: free {free}, known {known}, occupied with probability {memory.probability([place])[0]:.2f}"
+    )

@@ -53,7 +53,7 @@ for number in range(MOTIONS):
     error = 100.0 * np.linalg.norm(estimate.point - true.point)
     spread = [round(100.0 * value, 1) for value in (motion.spread_before, motion.spread_after)]
     print(
-        f"motion {number + 1}: expected {motion.information:.1f} nats, spread {spread[0]} -> {spread[1]} cm, at most"
-        f" {motion.force_range[1]:.0f} N; error {error:.1f} cm, force {np.linalg.norm(true.force):.0f} N"
+        f"motion {number + 1}: expected {motion.information:.1f} nats, spread {spread[0]} -> {spread[1]} cm;"
+        f" error {error:.1f} cm, force {np.linalg.norm(true.force):.0f} N"
     )
 print(f"{estimate.link}: ambiguous: {estimate.ambiguous}")

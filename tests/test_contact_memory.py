@@ -73,7 +73,8 @@ def test_a_wall_touched_often_is_found():
     assert (memory.probability(behind) > 0.8).all()
     np.testing.assert_allclose(memory.probability(before), 0.1)
     lower, upper = memory.boxes(least=0.5)
-    assert (lower[:, 0] >= 0.58 - 1e-9).all() and (upper[:, 0] <= 0.66 + 1e-9).all()
+    assert (lower[:, 0] >= 0.58 - 1e-9).all()
+    assert (upper[:, 0] <= 0.66 + 1e-9).all()
 
 
 def test_the_obstacle_is_on_the_outer_side():
@@ -84,8 +85,8 @@ def test_the_obstacle_is_on_the_outer_side():
 
 
 def test_probabilities_are_calibrated():
-    # Random worlds of voxels, occupied with the prior; a contact on a random occupied one, its point with noise. Judged are those
-    # whose measured point is far from the edge of the world.
+    # Random worlds of voxels, occupied with the prior; a contact on a random occupied one, with noise.
+    # Judged are those whose measured point is far from the edge of the world.
     edge, prior, deviation = 0.1, 0.3, 0.02
     rng = np.random.default_rng(1)
     said, true = [], []
@@ -106,7 +107,11 @@ def test_probabilities_are_calibrated():
     for low, high in [(0.3, 0.4), (0.4, 0.55), (0.55, 0.75), (0.75, 1.0)]:
         chosen = (said >= low) & (said < high)
         assert chosen.sum() > 100
-        assert abs(said[chosen].mean() - true[chosen].mean()) < 0.06, (low, said[chosen].mean(), true[chosen].mean())
+        assert abs(said[chosen].mean() - true[chosen].mean()) < 0.06, (
+            low,
+            said[chosen].mean(),
+            true[chosen].mean(),
+        )
 
 
 def test_an_estimate_and_a_contact_can_be_added():
@@ -114,7 +119,8 @@ def test_an_estimate_and_a_contact_can_be_added():
     estimate = tracker.update(Q, IIWA.jacobian(Q, "iiwa_link_7")[:3].T @ [0.0, 0.0, -20.0])
     memory = cs.ContactMemory(IIWA, prior=0.1)
     memory.add_contact(estimate)
-    assert len(memory) > 0 and (memory.points()[1] >= 0.1).all()
+    assert len(memory) > 0
+    assert (memory.points()[1] >= 0.1).all()
     found = cs.ContactIsolator(IIWA).isolate(Q, IIWA.jacobian(Q, "iiwa_link_7")[:3].T @ [0.0, 0.0, -20.0])
     other = cs.ContactMemory(IIWA, prior=0.1)
     (contact,) = found.contacts
@@ -148,7 +154,8 @@ def test_files_pickles_and_copies_keep_all(tmp_path):
         pickle.loads(pickle.dumps(memory)),
         copy.deepcopy(memory),
     ):
-        assert type(again) is cs.ContactMemory and repr(again) == repr(memory)
+        assert type(again) is cs.ContactMemory
+        assert repr(again) == repr(memory)
         assert (again.prior, again.max_voxels) == (0.3, 10_000)
         for a, b in zip(memory.points(), again.points(), strict=True):
             np.testing.assert_array_equal(a, b)

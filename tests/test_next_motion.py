@@ -1,13 +1,13 @@
-"""The next motion in contact: bounds, what it is expected to tell, and that it locates contacts sooner than random ones."""
+"""The next motion in contact: its bounds, and that it locates contacts sooner than random ones."""
 
 import copy
 import pickle
 
 import numpy as np
 import pytest
-from contactsense_studies.next_motion import MOST, Touched, locate, median_motions, trials
 
 import contactsense as cs
+from contactsense_studies.next_motion import MOST, Touched, locate, median_motions, trials
 
 IIWA = cs.Robot.named("iiwa14")
 MAX_FORCE, MAX_STEP = 60.0, np.deg2rad(1.0)
@@ -32,14 +32,19 @@ def test_it_is_a_small_motion_from_here_from_rest_to_rest(particles):
     touched, tracker, estimate = felt()
     q = touched.scene.q
     motion = planned(tracker, estimate, q, **({} if particles else {"particles": None}))
-    assert motion and isinstance(motion, cs.Motion) and motion.reason == ""
+    assert motion
+    assert isinstance(motion, cs.Motion)
+    assert motion.reason == ""
     np.testing.assert_allclose(motion.q[0], q, atol=1e-12)
-    assert np.abs(motion.q - q).max() <= MAX_STEP * (1 + 1e-9) and np.abs(motion.q[-1] - q).max() > 0.0
+    assert np.abs(motion.q - q).max() <= MAX_STEP * (1 + 1e-9)
+    assert np.abs(motion.q[-1] - q).max() > 0.0
     np.testing.assert_allclose(motion.v[[0, -1]], 0.0, atol=1e-9)
     assert (motion.duration, motion.time[-1], len(motion)) == (0.5, 0.5, 501)
     assert 0 < motion.admissible <= motion.candidates == 16
-    assert motion.information > 0.0 and motion.spread_after < motion.spread_before
-    assert motion.force_range.shape == (2,) and motion.force_range[0] <= motion.force_range[1]
+    assert motion.information > 0.0
+    assert motion.spread_after < motion.spread_before
+    assert motion.force_range.shape == (2,)
+    assert motion.force_range[0] <= motion.force_range[1]
 
 
 def test_no_force_exceeds_the_bound_and_none_is_lost():
@@ -49,9 +54,10 @@ def test_no_force_exceeds_the_bound_and_none_is_lost():
         for number in range(3):
             motion = planned(tracker, estimate, q, seed=number)
             for pose in motion.q[50::50]:
-                force = touched.forces(pose)
-                assert [contact.link for contact in force] == [touched.scene.link]
-                assert np.linalg.norm(force[0].force) <= MAX_FORCE
+                # The obstacle may reach another link: what is around the robot is not known.
+                forces = {contact.link: np.linalg.norm(contact.force) for contact in touched.forces(pose)}
+                assert touched.scene.link in forces
+                assert max(forces.values()) <= MAX_FORCE
                 estimate = tracker.update(pose, touched.torques(pose, 1)[0])
                 q = pose
 
@@ -71,14 +77,15 @@ def test_without_contact_the_robot_stays():
     tracker = cs.ContactParticleFilter(IIWA, particles=500)
     q = np.full(7, 0.4)
     motion = planned(tracker, tracker.update(q, np.zeros(7)), q)
-    assert not motion and motion.reason == "no contact"
-    assert motion.q.shape == (0, 7) and motion.duration == 0.0
+    assert not motion
+    assert motion.reason == "no contact"
+    assert motion.q.shape == (0, 7)
+    assert motion.duration == 0.0
     assert (motion.candidates, motion.admissible, motion.information) == (0, 0, 0.0)
     np.testing.assert_array_equal(motion.at(1.0)[0], q)
 
 
 def test_where_nothing_is_admissible_it_says_so():
-    # A contact that 1 mrad turns by more than it is deep, on a link of which nothing is known: one draw, no way out.
     touched, tracker, estimate = felt()
     q = touched.scene.q
     # A bound below the force that is there already allows no motion that presses.
@@ -89,7 +96,8 @@ def test_where_nothing_is_admissible_it_says_so():
         if motion:
             # It does not press harder than now.
             before = np.linalg.norm(touched.scene.force)
-            assert all(np.linalg.norm(found.force) <= before * 1.05 for found in touched.forces(motion.q[-1]))
+            forces = [np.linalg.norm(found.force) for found in touched.forces(motion.q[-1])]
+            assert max(forces) <= 1.05 * before
 
 
 def test_the_same_seed_gives_the_same_motion():
@@ -112,7 +120,8 @@ def test_it_can_be_pickled_and_copied():
     touched, tracker, estimate = felt()
     motion = planned(tracker, estimate, touched.scene.q)
     for again in (pickle.loads(pickle.dumps(motion)), copy.deepcopy(motion)):
-        assert again.to_dict() == motion.to_dict() and repr(again) == repr(motion)
+        assert again.to_dict() == motion.to_dict()
+        assert repr(again) == repr(motion)
         np.testing.assert_array_equal(again.at(0.2)[0], motion.at(0.2)[0])
 
 
@@ -150,7 +159,7 @@ def test_wrong_objects_are_named():
 
 
 def test_planned_motions_locate_a_contact_sooner_than_random_ones():
-    # Three joints feel link 3: a single pose leaves its height open. Random motions know the true contact, and keep it.
+    # Few joints feel link 3. The random motions are drawn with knowledge of the true contact, and keep it.
     links, count = ("iiwa_link_3",), 5
     arguments = {"seed": 7, "max_force": MAX_FORCE, "max_step": MAX_STEP}
     random = trials(IIWA, links, "random", count, **arguments)
@@ -158,14 +167,14 @@ def test_planned_motions_locate_a_contact_sooner_than_random_ones():
     assert [each.link for each in random] == [each.link for each in planned_ones]
     assert median_motions(planned_ones) <= 0.5 * median_motions(random)
     for outcome in planned_ones:
-        assert outcome.greatest_force <= MAX_FORCE and not outcome.lost
+        assert outcome.greatest_force <= MAX_FORCE
+        assert not outcome.lost
 
 
 def test_a_trial_is_the_same_for_the_same_seed():
     one, same = (
-        locate(
-            IIWA, "iiwa_link_5", "planned", seed=4, max_force=MAX_FORCE, max_step=MAX_STEP, particles=1000
-        )
+        locate(IIWA, "iiwa_link_5", "planned", seed=4, max_force=MAX_FORCE, max_step=MAX_STEP, particles=1000)
         for _ in range(2)
     )
-    assert one == same and (one.motions is None or one.motions <= MOST)
+    assert one == same
+    assert one.motions is None or one.motions <= MOST

@@ -54,9 +54,19 @@ SIGNATURES = {
     "NoiseModel.covariance": "robot, q, *, gain=50.0, dt=0.001",
     "NoiseModel.correlation_time": "robot, q, *, gain=50.0, dt=0.001",
     "exciting_motion": "robot, seconds, *, max_velocity=None, seed=0, dt=0.001, joints=None",
-    "next_motion": "robot, estimate, q, *, max_force, max_step, count=64, seed=0, particles=None, noise=None, "
-    "calibration=None, duration=0.5, dt=0.001",
+    "next_motion": "robot, estimate, q, *, max_force, max_step, count=64, seed=0, particles=None, "
+    "noise=None, calibration=None, duration=0.5, dt=0.001",
     "NextMotion.to_dict": "",
+    "ContactMemory": "robot, *, resolution=0.02, prior=0.5, free_error=0.01, contact_error=0.05, "
+    "max_voxels=2_000_000",
+    "ContactMemory.add_free": "q",
+    "ContactMemory.add_contact": "contact",
+    "ContactMemory.probability": "points",
+    "ContactMemory.is_free": "points, *, below=0.1",
+    "ContactMemory.known": "points",
+    "ContactMemory.points": "",
+    "ContactMemory.boxes": "*, least=0.5, most=1.0",
+    "ContactMemory.clear": "",
     "Motion.at": "time",
     "Motion.to_dict": "",
     "diagnose": "robot, q, v, tau, *, sensors=(), wrenches=None, time=None",

@@ -15,7 +15,7 @@ from .errors import InputError
 _OPTIONS = ("resolution", "prior", "free_error", "contact_error", "max_voxels")
 
 
-class ContactMemory(_ContactMemory):
+class ContactMemory(_ContactMemory):  # noqa: D101 - the docstring is that of the base
     __doc__ = _ContactMemory.__doc__
 
     def save(self, path: str | PathLike[str]) -> None:
@@ -30,10 +30,11 @@ class ContactMemory(_ContactMemory):
             InputError: The file cannot be written.
         """
         indices, log_odds = self._voxels()
-        options = {name: np.asarray(getattr(self, name)) for name in _OPTIONS}
+        arrays: dict[str, Any] = {name: getattr(self, name) for name in _OPTIONS}
+        arrays |= {"indices": indices.astype(np.int32), "log_odds": log_odds}
         try:
             with open(path, "wb") as file:
-                np.savez_compressed(file, indices=indices.astype(np.int32), log_odds=log_odds, **options)
+                np.savez_compressed(file, **arrays)
         except OSError as cause:
             raise InputError(f"path: '{path}' cannot be written ({cause})") from cause
 
@@ -61,7 +62,9 @@ class ContactMemory(_ContactMemory):
         return _restored, (type(self), self.robot, options, *self._voxels())
 
 
-def _restored(cls: Any, robot: Any, options: dict[str, Any], indices: Any, log_odds: Any) -> Any:
+def _restored(
+    cls: type[ContactMemory], robot: _Robot, options: dict[str, Any], indices: Any, log_odds: Any
+) -> ContactMemory:
     memory = cls(robot, **options)
     memory._set_voxels(np.asarray(indices, dtype=np.float64).reshape(-1, 3), log_odds)
     return memory

@@ -1,8 +1,8 @@
 """How many small motions a particle filter needs to locate a contact: planned by `next_motion`, or at random.
 
-A sphere presses on a link. The arm moves in straight lines of its joints, slowly enough that only the contact counts, and the
-filter is given the external torques on the way and at rest afterwards, with noise. A motion is over when the arm is at rest; the
-trial is over when the estimated point is within a centimetre of the true one.
+A sphere presses on a link. The arm moves in straight lines of its joints, slowly enough that only the
+contact counts, and the filter is given the external torques on the way and at rest afterwards, with noise.
+The trial is over when, after a motion, the estimated point is within a centimetre of the true one.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ class Touched:
 def random_step(
     touched: Touched, q: FloatArray, max_force: float, max_step: float, rng: np.random.Generator
 ) -> FloatArray | None:
-    """Each joint uniform, drawn until the true contact is kept: a planner that knows the contact, and draws blindly."""
+    """Each joint uniform, drawn until the true contact is kept and the true force within its bound."""
     low, high = touched.robot.position_limits.T
     size = max_step
     while size > 0.01 * max_step:
@@ -103,7 +103,14 @@ def random_step(
 
 
 def locate(
-    robot: Robot, link: str, way: Way, *, seed: int, max_force: float, max_step: float, particles: int = 10_000
+    robot: Robot,
+    link: str,
+    way: Way,
+    *,
+    seed: int,
+    max_force: float,
+    max_step: float,
+    particles: int = 10_000,
 ) -> Outcome:
     """One trial; the same seed is the same contact for every `way`.
 

@@ -126,8 +126,9 @@ impl PyNextMotion {
 ///
 /// `count` motions are drawn at random. Each hypothesis about the contact is an obstacle that stays where it is, and predicts
 /// how force and torque change with a motion. A motion is admissible where, under all hypotheses but those that are less
-/// probable than 4 % together, the force stays between a quarter of what it is and `max_force`, and does not rise where it
-/// is greater already; stiffnesses are taken as a fifth greater. Of the admissible ones the one is taken after which the
+/// probable than 4 % together, the force stays between a quarter of what it is and `max_force`; stiffnesses are taken as a
+/// fifth greater. Forces that are greater than `max_force` already are held to be impossible, or, where a quarter of the
+/// probability has such, must not rise. Of the admissible ones the one is taken after which the
 /// expected spread of the contact point is least: each hypothesis in turn is held to be true, torques are drawn with their
 /// noise, and what they leave of the others is averaged.
 ///
@@ -206,6 +207,9 @@ pub fn next_motion(
     }
     options.noise = noise_of(&robot, noise, calibration)?;
     let shared = robot.get().0.clone();
+    if shared.floating_base() {
+        return Err(input(py, "robot: its base must be fixed: a motion of the joints alone moves another one".into()));
+    }
     let (estimate, torque) = estimate.get().of_robot(py, &shared)?;
     let particles = match particles {
         Some(particles) => {

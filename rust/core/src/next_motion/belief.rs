@@ -23,6 +23,9 @@ const PLACES: usize = 1024;
 const LOG_STIFFNESS: [f64; 2] = [0.3, 1.0];
 /// Weaker contacts are not followed, nor are those that would need more to explain the torque (N).
 const FORCES: [f64; 2] = [0.1, 500.0];
+/// An obstacle touches where it should if it does within this (m); its radius is halved so often until it does.
+const SAME_POINT: f64 = 1e-3;
+const SHRINKINGS: usize = 8;
 /// Random numbers of a place or an obstacle, and which for what; normal ones take two.
 const RADIUS: u64 = 0;
 const STIFFNESS: u64 = 2;
@@ -233,10 +236,19 @@ impl Believed<'_> {
         let Place { link, at, force, stiffness, .. } = place;
         let surface = self.here.surface(*link)?;
         let [low, high] = FilterOptions::default().radius_range;
-        let radius = low * (high / low).powf(self.random.fork(RADII).fork(k).uniform(RADIUS));
+        let mut radius = low * (high / low).powf(self.random.fork(RADII).fork(k).uniform(RADIUS));
         let triangle = at.triangle.or_else(|| surface.closest_point(&at.point).triangle);
-        let local = at.point + at.normal * radius;
-        let near = surface.closest_point_near(&local, triangle);
+        let mut local = at.point + at.normal * radius;
+        let mut near = surface.closest_point_near(&local, triangle);
+        // A larger obstacle would touch the link elsewhere first.
+        for _ in 0..SHRINKINGS {
+            if (near.point - at.point).norm() < SAME_POINT {
+                break;
+            }
+            radius *= 0.5;
+            local = at.point + at.normal * radius;
+            near = surface.closest_point_near(&local, triangle);
+        }
         let pose = self.here.pose(*link);
         Some(Obstacle {
             link: *link,

@@ -15,6 +15,9 @@ const STIFFNESS_MARGIN: f64 = 0.2;
 const LEAST_SHARE: f64 = 0.25;
 /// Hypotheses that are less probable than this, all together, are not noticeable.
 const NOTICEABLE: f64 = 0.04;
+/// Forces that exceed the bound already are held to be impossible where they are less probable than this, all together: the
+/// robot would not be where it is.
+const EXCEEDED: f64 = 0.25;
 /// Rounds in which a motion is drawn to the linear bounds, and the share of them that it is drawn to: the rest is for what is not linear.
 const ROUNDS: usize = 40;
 const INSIDE: f64 = 0.85;
@@ -44,7 +47,7 @@ struct Bound {
 pub(super) struct Candidates<'a> {
     robot: &'a Robot,
     obstacles: &'a [Obstacle],
-    max_force: f64,
+    limit: Limit,
     q: &'a [f64],
     /// How far each joint may go either way (rad, m).
     room: Vec<[f64; 2]>,
@@ -62,6 +65,7 @@ impl<'a> Candidates<'a> {
         max_force: f64,
         max_step: &[f64],
     ) -> Self {
+        let limit = Limit::new(obstacles, max_force);
         let bound = |obstacle: &Obstacle| {
             let touch = here.touch(obstacle, obstacle.triangle)?;
             let mut rate = vec![0.0; robot.nv()];
@@ -69,7 +73,7 @@ impl<'a> Candidates<'a> {
             // The torque of the inward force is against the motion that presses.
             rate.iter_mut().for_each(|x| *x = -*x);
             let squared = rate.iter().map(|x| x * x).sum();
-            let [low, high] = allowed(obstacle, max_force);
+            let [low, high] = limit.allowed(obstacle);
             let stiffness = hardest(obstacle);
             let range = [(low - obstacle.force) / stiffness, (high - obstacle.force) / stiffness];
             let range =
@@ -79,7 +83,7 @@ impl<'a> Candidates<'a> {
         Candidates {
             robot,
             obstacles,
-            max_force,
+            limit,
             q,
             room: room(robot, q, max_step),
             bounds: obstacles.iter().filter_map(bound).collect(),
@@ -145,7 +149,7 @@ impl<'a> Candidates<'a> {
                 let stiffness = hardest(obstacle);
                 let force = |deeper: f64| (obstacle.force + stiffness * deeper).max(0.0);
                 let (least, most) = (force(touch.deeper - DEPTH_ERROR), force(touch.deeper + DEPTH_ERROR));
-                let [low, high] = allowed(obstacle, self.max_force);
+                let [low, high] = self.limit.allowed(obstacle);
                 // Motion that neither presses nor pulls is always allowed.
                 wrong[k] |= (least < low && touch.deeper < 0.0) || (most > high && touch.deeper > 0.0);
                 let likely = (obstacle.force + obstacle.stiffness * touch.deeper).max(0.0);
@@ -155,15 +159,39 @@ impl<'a> Candidates<'a> {
                 return Ok(None);
             }
         }
-        let kept = forces.iter().zip(&wrong).filter(|(_, wrong)| !**wrong).map(|(force, _)| force);
+        let all = forces.iter().zip(&wrong).zip(self.obstacles);
+        let kept = all.filter(|((_, wrong), obstacle)| !**wrong && self.limit.possible(obstacle));
+        let kept = kept.map(|((force, _), _)| force);
         Ok(Some(kept.fold([f64::INFINITY, 0.0], |all, one| [all[0].min(one[0]), all[1].max(one[1])])))
     }
 }
 
-/// Least and greatest force that an obstacle may exert on the way (N): none greater than the bound, or than now where that is
-/// exceeded already.
-fn allowed(obstacle: &Obstacle, max_force: f64) -> [f64; 2] {
-    [LEAST_SHARE * obstacle.force, max_force.max(obstacle.force)]
+/// Which forces are allowed.
+#[derive(Debug, Clone, Copy)]
+struct Limit {
+    /// N.
+    max_force: f64,
+    /// Whether it may be exceeded already.
+    exceeded: bool,
+}
+
+impl Limit {
+    fn new(obstacles: &[Obstacle], max_force: f64) -> Self {
+        let over = obstacles.iter().filter(|obstacle| obstacle.force > max_force).count();
+        Limit { max_force, exceeded: over as f64 > EXCEEDED * obstacles.len() as f64 }
+    }
+
+    /// Whether the present force of an obstacle is held to be possible.
+    fn possible(&self, obstacle: &Obstacle) -> bool {
+        self.exceeded || obstacle.force <= self.max_force
+    }
+
+    /// Least and greatest force that an obstacle may exert on the way (N): none greater than the bound, or than now where that is
+    /// exceeded already.
+    fn allowed(&self, obstacle: &Obstacle) -> [f64; 2] {
+        let most = if self.possible(obstacle) { self.max_force.max(obstacle.force) } else { f64::INFINITY };
+        [LEAST_SHARE * obstacle.force, most]
+    }
 }
 
 /// The stiffness that is reckoned with (N/m).

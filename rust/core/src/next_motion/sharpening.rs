@@ -3,6 +3,9 @@
 //! A filter takes a measurement in little by little, and draws some particles anew from all of the surface: right after an update
 //! its weights are wider than what the torque says.
 
+/// Torques may err by so many times what is stated, as in the filter: only what contradicts them clearly loses its weight, and a
+/// mode that the filter holds possible stays.
+const GRANTED: f64 = 3.0;
 /// So many hypotheses stay effective.
 const LEAST_EFFECTIVE: f64 = 64.0;
 /// Where they do not, the torque is held to err by twice the variance, so often.
@@ -19,7 +22,7 @@ pub(super) fn sharpen(weights: &mut [f64], misfits: &[f64], joints: usize) -> bo
     }
     let wanted = LEAST_EFFECTIVE.min(0.5 * effective(weights.iter().copied()));
     // One degree of freedom is the force's.
-    let mut variance = (least / joints.saturating_sub(1).max(1) as f64).max(1.0);
+    let mut variance = (least / joints.saturating_sub(1).max(1) as f64).max(GRANTED * GRANTED);
     let weight =
         |weight: f64, misfit: f64, variance: f64| weight * (-0.5 * (misfit - least) / variance).exp();
     for _ in 0..WIDENINGS {
@@ -54,7 +57,7 @@ mod tests {
     #[test]
     fn what_explains_the_torque_gets_the_weight() {
         let mut weights = vec![1.0; 1000];
-        let misfits: Vec<f64> = (0..1000).map(|k| if k < 100 { 3.0 } else { 50.0 }).collect();
+        let misfits: Vec<f64> = (0..1000).map(|k| if k < 100 { 3.0 } else { 300.0 }).collect();
         assert!(sharpen(&mut weights, &misfits, 7));
         let good: f64 = weights[..100].iter().sum();
         assert!(good > 0.999 && (weights.iter().sum::<f64>() - 1.0).abs() < 1e-12);
