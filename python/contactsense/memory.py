@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zipfile
 from os import PathLike
 from typing import Any
 
@@ -49,11 +48,13 @@ class ContactMemory(_ContactMemory):  # noqa: D101 - the docstring is that of th
         Raises:
             InputError: The file cannot be read, or is none of `save`.
         """
+        from zipfile import BadZipFile
+
         try:
             with np.load(path, allow_pickle=False) as arrays:
                 options: dict[str, Any] = {name: arrays[name].item() for name in _OPTIONS}
                 indices, log_odds = arrays["indices"], arrays["log_odds"]
-        except (OSError, KeyError, ValueError, zipfile.BadZipFile) as cause:
+        except (OSError, KeyError, ValueError, BadZipFile) as cause:
             raise InputError(f"path: '{path}' is no file of ContactMemory.save ({cause})") from cause
         return _restored(cls, robot, options, indices, log_odds)
 

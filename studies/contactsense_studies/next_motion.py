@@ -111,6 +111,7 @@ def locate(
     max_force: float,
     max_step: float,
     particles: int = 10_000,
+    most: int = MOST,
 ) -> Outcome:
     """One trial; the same seed is the same contact for every `way`.
 
@@ -122,6 +123,7 @@ def locate(
         max_force: [N].
         max_step: of a joint [rad].
         particles: of the filter.
+        most: motions, after which the trial ends.
 
     Raises:
         InputError: the link cannot be touched so.
@@ -132,7 +134,7 @@ def locate(
     q, greatest = touched.scene.q, float(np.linalg.norm(touched.scene.force))
     for torque in touched.torques(q, AT_REST):
         estimate = tracker.update(q, torque)
-    for motion in range(1, MOST + 1):
+    for motion in range(1, most + 1):
         step = _step(way, touched, tracker, estimate, q, max_force, max_step, rng)
         if step is None:
             continue  # the arm stays
@@ -191,6 +193,7 @@ def trials(
     max_force: float = 60.0,
     max_step: float = np.deg2rad(1.0),
     particles: int = 10_000,
+    most: int = MOST,
 ) -> list[Outcome]:
     """Trials on the links in turn."""
     outcomes = []
@@ -206,6 +209,7 @@ def trials(
                     max_force=max_force,
                     max_step=max_step,
                     particles=particles,
+                    most=most,
                 )
             except InputError:
                 continue  # such a contact was not found

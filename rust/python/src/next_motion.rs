@@ -12,6 +12,7 @@ use crate::calibration::noise_of;
 use crate::errors::{detached, input, to_python};
 use crate::estimate::PyContactEstimate;
 use crate::motion::{PyMotion, ATTRIBUTES};
+use crate::once::Once;
 use crate::particle::Particles;
 use crate::pickle::{plain_dict, reduced, Reduced};
 use crate::returned::numbers;
@@ -32,12 +33,15 @@ use crate::robot_argument::robot;
 ///     >>> motion.spread_after < motion.spread_before
 ///     True
 #[pyclass(extends = PyMotion, frozen, name = "NextMotion", module = "contactsense")]
-pub struct PyNextMotion(NextMotion);
+pub struct PyNextMotion {
+    found: NextMotion,
+    force_range: Once<PyArray1<f64>>,
+}
 
 impl PyNextMotion {
     pub fn with_base(py: Python<'_>, found: NextMotion) -> PyResult<PyClassInitializer<Self>> {
         let base = PyMotion::new(py, found.motion.clone())?;
-        Ok(PyClassInitializer::from(base).add_subclass(Self(found)))
+        Ok(PyClassInitializer::from(base).add_subclass(Self { found, force_range: Once::default() }))
     }
 }
 
@@ -46,19 +50,19 @@ impl PyNextMotion {
     /// Expected information about the contact [nats]: by how much the entropy of the hypotheses is expected to fall.
     #[getter]
     fn information(&self) -> f64 {
-        self.0.information
+        self.found.information
     }
 
     /// Root mean square distance of the contact point from its mean, now [m]; NaN without contact.
     #[getter]
     fn spread_before(&self) -> f64 {
-        self.0.spread_before
+        self.found.spread_before
     }
 
     /// The same after the motion, as expected [m].
     #[getter]
     fn spread_after(&self) -> f64 {
-        self.0.spread_after
+        self.found.spread_after
     }
 
     /// Least and greatest predicted force on the way, `(2,)` [N]; NaN where there is no motion; read-only.
@@ -66,26 +70,26 @@ impl PyNextMotion {
     /// Over the hypotheses that are noticeable, each with its own stiffness. Greater than `max_force` only where a hypothesis
     /// has such a force already.
     #[getter]
-    fn force_range<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        numbers(py, &self.0.force_range)
+    fn force_range<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        self.force_range.get(py, || Ok(numbers(py, &self.found.force_range)))
     }
 
     /// How many motions were drawn.
     #[getter]
     fn candidates(&self) -> usize {
-        self.0.candidates
+        self.found.candidates
     }
 
     /// How many of them neither lose the contact nor press too hard.
     #[getter]
     fn admissible(&self) -> usize {
-        self.0.admissible
+        self.found.admissible
     }
 
     /// Why there is no motion: "no contact" or "no admissible motion"; empty where there is one.
     #[getter]
     fn reason(&self) -> &'static str {
-        self.0.nothing_found.map_or("", |why| why.name())
+        self.found.nothing_found.map_or("", |why| why.name())
     }
 
     /// All attributes by name.
@@ -106,11 +110,12 @@ impl PyNextMotion {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        reduced(py, "NextMotion", &self.0)
+        reduced(py, "NextMotion", &self.found)
     }
 
     fn __repr__(&self) -> String {
-        let NextMotion { information, spread_before, spread_after, force_range, nothing_found, .. } = &self.0;
+        let NextMotion { information, spread_before, spread_after, force_range, nothing_found, .. } =
+            &self.found;
         let [least, most] = force_range;
         match nothing_found {
             Some(why) => format!("NextMotion({})", why.name()),
@@ -208,7 +213,10 @@ pub fn next_motion(
     options.noise = noise_of(&robot, noise, calibration)?;
     let shared = robot.get().0.clone();
     if shared.floating_base() {
-        return Err(input(py, "robot: its base must be fixed: a motion of the joints alone moves another one".into()));
+        return Err(input(
+            py,
+            "robot: its base must be fixed: a motion of the joints alone moves another one".into(),
+        ));
     }
     let (estimate, torque) = estimate.get().of_robot(py, &shared)?;
     let particles = match particles {
