@@ -103,6 +103,7 @@ ABOVE = (
     "test_bimbo2019",
     "test_franka_touch",
     "test_identifiability_study",
+    "test_next_motion",
     "test_real_arm",
     "test_single_contacts",
     "test_vorndamme2017",

@@ -42,9 +42,17 @@ FINDINGS = {
         r"^contact detected \d\d ms .*\n  utorso, .*\n  total force 5[5-9] N, true force 57 N, .* 1[67].. N\n"
         r"contact detected \d\d ms .*\n  l_hand, located: True, by l_hand\n  total force (3[789]|40) N, .*\n$"
     ),
+    "contact_memory.py": (
+        r"^2\d{3} voxels known, [1-4]\d of them .*\nwall at x = 0\.5[5-8] m, .*\n\d+ boxes .*\n"
+        r".*way: free True, known True, .* 0\.01\nnever seen: free False, known False, .* 0\.20\n$"
+    ),
     "mujoco_truth.py": (
         r"^0\.5 s: 0 contacts\n  truth    \[0\. 0\. 0\. (.|\n)*1\.4 s: [1-9] contacts(.|\n)*"
         r"torque 1[3-7]\d Nm, mean error 0\.[01]\d\d Nm, "
+    ),
+    "next_motion.py": (
+        r"^motion 1: expected (.|\n)*motion 6: .* error [0-2]\.\d cm, force [1-5]?\d N\n"
+        r"iiwa_link_3: ambiguous: (True|False)\n$"
     ),
     "own_robot.py": r"warning: .*'elbow'(.|\n)*warning: .*'lower'(.|\n)*refused: link 'upper'",
     "particle_filter_near_the_base.py": (

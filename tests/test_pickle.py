@@ -94,6 +94,7 @@ def objects():
         "ToolLoad": cs.identify_tool(robot, sensors[0], poses, weights),
         "PayloadProposal": proposal(robot),
         "Motion": cs.exciting_motion(robot, 1.0, dt=0.05),
+        "NextMotion": cs.next_motion(robot, estimate, Q, max_force=60.0, max_step=0.02, count=4, dt=0.05),
     }
 
 
@@ -137,6 +138,7 @@ NAMES = [
     "ToolLoad",
     "PayloadProposal",
     "Motion",
+    "NextMotion",
 ]
 
 
@@ -195,6 +197,7 @@ def test_another_version_is_refused(objects):
         "JointFriction",
         "BodyInertia",
         "Motion",
+        "NextMotion",
     ],
 )
 def test_to_dict_holds_all_attributes_as_plain_values(objects, name):

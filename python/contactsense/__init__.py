@@ -23,6 +23,7 @@ from ._core import (
     Mode,
     MomentumObserver,
     Motion,
+    NextMotion,
     NoiseModel,
     Particles,
     Payload,
@@ -38,11 +39,13 @@ from ._core import (
     diagnose,
     exciting_motion,
     identify_tool,
+    next_motion,
 )
 from .calibration import Calibration, calibrate
 from .errors import ContactSenseError, GeometryError, InputError, ModelError
 from .fleet import FleetReplay, replay_fleet
 from .log import Log, Reading, read_log
+from .memory import ContactMemory
 from .offline import Replay, ReplayedContact, replay
 from .robot import Robot
 from .viewer.view import View, view
@@ -58,6 +61,7 @@ __all__ = [
     "ContactEstimate",
     "ContactIsolator",
     "ContactMap",
+    "ContactMemory",
     "ContactMonitor",
     "ContactParticleFilter",
     "ContactReport",
@@ -77,6 +81,7 @@ __all__ = [
     "ModelError",
     "MomentumObserver",
     "Motion",
+    "NextMotion",
     "NoiseModel",
     "Particles",
     "Payload",
@@ -98,6 +103,7 @@ __all__ = [
     "diagnose",
     "exciting_motion",
     "identify_tool",
+    "next_motion",
     "read_log",
     "replay",
     "replay_fleet",

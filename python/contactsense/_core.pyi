@@ -20,6 +20,7 @@ __all__ = [
     "ContactEstimate",
     "ContactIsolator",
     "ContactMap",
+    "ContactMemory",
     "ContactMonitor",
     "ContactParticleFilter",
     "ContactReport",
@@ -37,6 +38,7 @@ __all__ = [
     "ModelError",
     "MomentumObserver",
     "Motion",
+    "NextMotion",
     "NoiseModel",
     "Particles",
     "Payload",
@@ -57,6 +59,7 @@ __all__ = [
     "diagnose",
     "exciting_motion",
     "identify_tool",
+    "next_motion",
 ]
 
 __version__: Final[str]
@@ -1061,7 +1064,7 @@ class Payload:
             Plain Python values: numbers, strings, and lists in place of arrays.
         """
 
-@final
+@disjoint_base
 class Motion:
     """A planned motion: where the robot is at each instant, `n` rows at equal distances of time. Read-only.
 
@@ -2785,6 +2788,269 @@ def _calibrate(
     torque_is_external: bool,
 ) -> Calibration:
     """From the columns of a log, each flat."""
+
+@final
+class NextMotion(Motion):
+    """A small motion in contact, and what it is expected to tell: a `Motion` that explains itself. Read-only.
+
+    Where nothing was found it has no rows and is false: `if motion:` asks whether there is one. `reason` then says why. Can be
+    pickled and copied.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> robot, q = cs.Robot.named("iiwa14"), np.full(7, 0.4)
+        >>> particle_filter = cs.ContactParticleFilter(robot, particles=500)
+        >>> estimate = particle_filter.update(q, [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])
+        >>> motion = cs.next_motion(robot, estimate, q, max_force=60.0, max_step=0.03)
+        >>> motion.spread_after < motion.spread_before
+        True
+    """
+
+    @property
+    def information(self) -> float:
+        """Expected information about the contact [nats]: by how much the entropy of the hypotheses is expected to fall."""
+    @property
+    def spread_before(self) -> float:
+        """Root mean square distance of the contact point from its mean, now [m]; NaN without contact."""
+    @property
+    def spread_after(self) -> float:
+        """The same after the motion, as expected [m]."""
+    @property
+    def force_range(self) -> NDArray[np.float64]:
+        """Least and greatest predicted force on the way, `(2,)` [N]; NaN where there is no motion; read-only.
+
+        Over the hypotheses that are noticeable, each with its own stiffness. Greater than `max_force` only where a hypothesis
+        has such a force already.
+        """
+    @property
+    def candidates(self) -> int:
+        """How many motions were drawn."""
+    @property
+    def admissible(self) -> int:
+        """How many of them neither lose the contact nor press too hard."""
+    @property
+    def reason(self) -> str:
+        """Why there is no motion: "no contact" or "no admissible motion"; empty where there is one."""
+    def to_dict(self) -> dict[str, Any]:
+        """All attributes by name.
+
+        Returns:
+            Plain Python values: numbers, strings, and lists in place of arrays.
+        """
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+def next_motion(
+    robot: Robot,
+    estimate: ContactEstimate,
+    q: ArrayLike,
+    *,
+    max_force: float,
+    max_step: ArrayLike,
+    count: int = 64,
+    seed: int = 0,
+    particles: Particles | None = None,
+    noise: NoiseModel | None = None,
+    calibration: Calibration | None = None,
+    duration: float = 0.5,
+    dt: float = 0.001,
+) -> NextMotion:
+    """The small motion in contact that is expected to tell most about where the contact is.
+
+    `count` motions are drawn at random. Each hypothesis about the contact is an obstacle that stays where it is, and predicts
+    how force and torque change with a motion. A motion is admissible where, under all hypotheses but those that are less
+    probable than 4 % together, the force stays between a quarter of what it is and `max_force`; stiffnesses are taken as a
+    fifth greater. Forces that are greater than `max_force` already are held to be impossible, or, where a quarter of the
+    probability has such, must not rise. Of the admissible ones the one is taken after which the
+    expected spread of the contact point is least: each hypothesis in turn is held to be true, torques are drawn with their
+    noise, and what they leave of the others is averaged.
+
+    Collisions of the robot with itself and its surroundings are not looked at. Nothing is known of friction. After the
+    motion give the filter the torques at its end, better also those on the way, and plan the next one.
+
+    Args:
+        robot: With a fixed base.
+        estimate: The contact: a `ContactEstimate` of `ContactParticleFilter.update`, or a `MapEstimate`.
+        q: Configuration that it was made at, `(nq,)`: the start of the motion.
+        max_force: Greatest normal force that is allowed [N].
+        max_step: How far each joint moves at most, scalar or `(nv,)` [rad; m for sliding joints].
+        count: How many motions are drawn, from 1 to 10,000.
+        seed: Of the random numbers: the same seed gives the same motion.
+        particles: `ContactParticleFilter.particles`, after the same update. They say more than `estimate.modes` with their
+            spreads, which are the hypotheses where this is None.
+        noise: A `NoiseModel`, the errors of the torques; None for the default of the filter.
+        calibration: A `Calibration` of this robot, whose noise takes the place of `noise`.
+        duration: Length of the motion [s].
+        dt: Time between its rows [s].
+
+    Returns:
+        A `NextMotion`, from `q` along a straight line of joint positions, at rest at both ends. Without rows, and false, where
+        the estimate shows no contact or no motion that was drawn is admissible.
+
+    Raises:
+        InputError: Names the argument; the base of the robot is free to move.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> robot, q = cs.Robot.named("iiwa14"), np.full(7, 0.4)
+        >>> particle_filter = cs.ContactParticleFilter(robot, particles=500)
+        >>> estimate = particle_filter.update(q, [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])
+        >>> motion = cs.next_motion(
+        ...     robot, estimate, q, max_force=60.0, max_step=0.03, particles=particle_filter.particles
+        ... )
+        >>> bool(motion), bool(np.abs(motion.q[-1] - q).max() <= 0.03)
+        (True, True)
+    """
+
+@disjoint_base
+class ContactMemory:
+    """Where obstacles are and where none are, fused from contacts and from the space that the robot's body has been in.
+
+    Space is divided into voxels in the world frame; of those of which something is known, the logarithm of the odds that they
+    are occupied is kept. A planner that has no camera asks it where the robot may go. The world is held to stand still.
+
+    A voxel whose centre the body has been in is free, but for `free_error`. A contact is in one of the voxels of the distribution
+    of its point, half a voxel outward of the surface, the likelier the likelier that voxel was occupied before, or, with
+    `contact_error`, elsewhere: a voxel is occupied if the contact is there, else as likely as before. One thread at a time may
+    use it.
+
+    Args:
+        robot: The robot.
+        resolution: Edge of a voxel, from 0.001 to 1 [m].
+        prior: Probability that a voxel is occupied of which nothing is known.
+        free_error: Probability that a voxel is occupied although the body has been there.
+        contact_error: Probability that a contact is at none of its places.
+        max_voxels: How many voxels are kept at most. What would need more is refused.
+
+    Raises:
+        InputError: Names the argument.
+
+    Example:
+        >>> import contactsense as cs, numpy as np
+        >>> robot = cs.Robot.named("iiwa14")
+        >>> memory = cs.ContactMemory(robot, resolution=0.05)
+        >>> memory.add_free(robot.neutral())
+        >>> bool(memory.is_free([[0.0, 0.0, 0.3]])[0])
+        True
+    """
+
+    def __new__(
+        cls,
+        robot: Robot,
+        *,
+        resolution: float = 0.02,
+        prior: float = 0.5,
+        free_error: float = 0.01,
+        contact_error: float = 0.05,
+        max_voxels: int = 2_000_000,
+    ) -> Self: ...
+    @property
+    def robot(self) -> Robot:
+        """The robot."""
+    @property
+    def resolution(self) -> float:
+        """Edge of a voxel [m]."""
+    @property
+    def prior(self) -> float:
+        """Probability that a voxel is occupied of which nothing is known."""
+    @property
+    def free_error(self) -> float:
+        """Probability that a voxel is occupied although the body has been there."""
+    @property
+    def contact_error(self) -> float:
+        """Probability that a contact is at none of its places."""
+    @property
+    def max_voxels(self) -> int:
+        """How many voxels are kept at most."""
+    def add_free(self, q: ArrayLike) -> None:
+        """The robot touched nothing: where its body is there is no obstacle.
+
+        Links whose surface is not closed have no inside, and say nothing. Adding a configuration again changes nothing. Other
+        Python threads run meanwhile.
+
+        Args:
+            q: A configuration, `(nq,)`, or several, `(n, nq)`.
+
+        Raises:
+            InputError: Names the argument; also where more than `max_voxels` would be known. Of several configurations those before
+                the one that is refused are kept.
+        """
+    def add_contact(
+        self, contact: ContactEstimate | Contact | tuple[ArrayLike, ArrayLike, ArrayLike]
+    ) -> None:
+        """There was one contact: an obstacle is at one of its places. To be called once a contact, not once a tick.
+
+        Args:
+            contact: A `ContactEstimate` or `MapEstimate`, a `Contact` of a report, or a tuple `(point, normal, covariance)` of
+                `(3,)` [m], `(3,)` outward, and `(3, 3)` [m^2], world frame. Modes share the evidence by their probabilities.
+
+        Raises:
+            InputError: Names the argument, or `max_voxels` where more would be known; the memory is unchanged.
+        """
+    def probability(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Probability that the voxel of each point is occupied; the prior where nothing is known of it.
+
+        Args:
+            points: `(n, 3)`, world frame [m].
+
+        Returns:
+            `(n,)`.
+
+        Raises:
+            InputError: Names the argument.
+        """
+    def is_free(self, points: ArrayLike, *, below: float = 0.1) -> NDArray[np.bool_]:
+        """Whether the voxel of each point is known to be free.
+
+        Args:
+            points: `(n, 3)`, world frame [m].
+            below: Free is what is occupied with a lower probability.
+
+        Returns:
+            `(n,)` of bool; False where nothing is known.
+
+        Raises:
+            InputError: Names the argument.
+        """
+    def known(self, points: ArrayLike) -> NDArray[np.bool_]:
+        """Whether anything is known of the voxel of each point.
+
+        Args:
+            points: `(n, 3)`, world frame [m].
+
+        Returns:
+            `(n,)` of bool.
+
+        Raises:
+            InputError: Names the argument.
+        """
+    def points(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Centres of all voxels of which something is known, and the probability that each is occupied.
+
+        Returns:
+            `(points, probabilities)`: `(n, 3)`, world frame [m], and `(n,)`; in the order of x, y, z; read-only.
+        """
+    def boxes(
+        self, *, least: float = 0.5, most: float = 1.0
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Axis-aligned boxes that hold exactly the known voxels whose probability is in a range, each once.
+
+        Args:
+            least: Least probability.
+            most: Greatest probability.
+
+        Returns:
+            `(lower, upper)`: corners, `(m, 3)` each, world frame [m]; read-only.
+
+        Raises:
+            InputError: Names the argument.
+        """
+    def clear(self) -> None:
+        """Forgets all."""
+    def _voxels(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Indices `(n, 3)` and log-odds `(n,)` of the known voxels: all that is known."""
+    def _set_voxels(self, indices: ArrayLike, log_odds: ArrayLike) -> None:
+        """Takes on what `_voxels` gave."""
+    def __len__(self) -> int: ...
 
 def exciting_motion(
     robot: Robot,

@@ -3,6 +3,8 @@
 use std::sync::Arc;
 
 use contactsense::isolation::{Candidate, Contact, Isolation, LinkProbability, PathPoint};
+use contactsense::nalgebra::Matrix3;
+use contactsense::occupancy::PossiblePlace;
 use contactsense::particle::Mode;
 use contactsense::sensor::JOINT_TORQUES;
 use numpy::{PyArray1, PyArray2};
@@ -78,6 +80,22 @@ impl PyContact {
             candidates: Once::default(),
             modes: Once::default(),
         }
+    }
+
+    /// Places where the contact may be; none where nothing looked for several.
+    pub fn modes_now(&self) -> &[Mode] {
+        &self.found.modes
+    }
+
+    /// Its one place, if that is determined.
+    pub fn one_place(&self) -> Option<PossiblePlace> {
+        let place = self.contact.place.filter(|place| place.std.is_finite())?;
+        Some(PossiblePlace {
+            point: place.point,
+            normal: place.normal,
+            covariance: Matrix3::identity() * (place.std * place.std / 3.0),
+            probability: 1.0,
+        })
     }
 
     pub fn from_content((names, contact, found): (Names, Contact, Found)) -> Self {

@@ -212,6 +212,7 @@ impl PyMapEstimate {
             effective_samples: *effective_samples,
             log_evidence: *log_evidence,
             updates: 1,
+            torque: vec![],
         };
         let base =
             PyContactEstimate::new(Arc::new(content.names.clone()), content.links.clone().into(), base, 0.0);

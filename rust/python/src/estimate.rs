@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use contactsense::nalgebra::SMatrix;
-use contactsense::particle::{FilterEstimate, Mode};
-use contactsense::robot::LinkIndex;
+use contactsense::particle::{ContactEstimate, FilterEstimate, Mode};
+use contactsense::robot::{LinkIndex, Robot};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
+use crate::errors::input;
 use crate::names::Names;
 use crate::once::Once;
 use crate::pickle::{plain_dict, reduced, Reduced};
@@ -179,6 +180,21 @@ impl PyContactEstimate {
 
     fn contact_mode(&self) -> Option<&Mode> {
         self.found.estimate.contact.as_ref()
+    }
+
+    /// Places where the contact may be.
+    pub fn modes_now(&self) -> &[Mode] {
+        &self.found.estimate.modes
+    }
+
+    /// What it says of the contact, and the torque that it is from if that is known; of this robot.
+    pub fn of_robot(&self, py: Python<'_>, robot: &Robot) -> PyResult<(&ContactEstimate, Option<&[f64]>)> {
+        let same = robot.links().iter().map(|link| &link.name).eq(&self.names.links);
+        if !same {
+            return Err(input(py, "estimate: it is of a robot with other links".into()));
+        }
+        let torque = (self.found.torque.len() == robot.nv()).then_some(&self.found.torque[..]);
+        Ok((&self.found.estimate, torque))
     }
 }
 

@@ -22,7 +22,7 @@ use crate::robot_argument::robot;
 ///     >>> q, v, a = motion.at(0.5)
 ///     >>> len(motion), q.shape
 ///     (2001, (7,))
-#[pyclass(frozen, name = "Motion", module = "contactsense")]
+#[pyclass(frozen, subclass, name = "Motion", module = "contactsense")]
 pub struct PyMotion {
     motion: Motion,
     time: Py<PyArray1<f64>>,
@@ -31,14 +31,18 @@ pub struct PyMotion {
     a: Py<PyArray2<f64>>,
 }
 
+/// What `to_dict` holds.
+pub const ATTRIBUTES: [&str; 6] = ["time", "q", "v", "a", "duration", "unchecked"];
+
 impl PyMotion {
     pub fn new(py: Python<'_>, motion: Motion) -> PyResult<Self> {
         let rows = motion.len();
-        let columns = |values: &[f64]| {
-            let width = values.len() / rows.max(1);
+        let joints = motion.joints();
+        let columns = |values: &[f64], width: usize| {
             PyResult::Ok(read_only(PyArray1::from_slice(py, values).reshape([rows, width])?).unbind())
         };
-        let (q, v, a) = (columns(&motion.q)?, columns(&motion.v)?, columns(&motion.a)?);
+        let q = columns(&motion.q, joints.0)?;
+        let (v, a) = (columns(&motion.v, joints.1)?, columns(&motion.a, joints.1)?);
         Ok(Self { time: numbers(py, &motion.time).unbind(), q, v, a, motion })
     }
 }
@@ -109,7 +113,7 @@ impl PyMotion {
     /// Returns:
     ///     Plain Python values: numbers, strings, and lists in place of arrays.
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        plain_dict(slf.as_any(), &["time", "q", "v", "a", "duration", "unchecked"])
+        plain_dict(slf.as_any(), &ATTRIBUTES)
     }
 
     fn __len__(&self) -> usize {

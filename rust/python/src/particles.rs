@@ -20,17 +20,17 @@ use crate::robot::PyRobot;
 #[pyclass(frozen, get_all, module = "contactsense")]
 pub struct Particles {
     /// Index into `robot.link_names`, `(n,)`.
-    link: Py<PyArray1<i64>>,
+    pub link: Py<PyArray1<i64>>,
     /// Points on the surface, `(n, 3)`, world frame [m].
-    point: Py<PyArray2<f64>>,
+    pub point: Py<PyArray2<f64>>,
     /// Outward unit normals there, `(n, 3)`, world frame.
-    normal: Py<PyArray2<f64>>,
+    pub normal: Py<PyArray2<f64>>,
     /// Force along the inward normal, `(n,)` [N].
-    force: Py<PyArray1<f64>>,
+    pub force: Py<PyArray1<f64>>,
     /// Stiffness of the contact, `(n,)` [N/m].
-    stiffness: Py<PyArray1<f64>>,
+    pub stiffness: Py<PyArray1<f64>>,
     /// Weights, `(n,)`, which sum to one.
-    weight: Py<PyArray1<f64>>,
+    pub weight: Py<PyArray1<f64>>,
 }
 
 /// One particle; the link by its number in the core, force along the inward normal.

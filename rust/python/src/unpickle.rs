@@ -17,6 +17,7 @@ use crate::identifiability::PyIdentifiability;
 use crate::isolation::PyIsolation;
 use crate::monitor_payload::PyPayloadProposal;
 use crate::motion::PyMotion;
+use crate::next_motion::PyNextMotion;
 use crate::noise::PyNoiseModel;
 use crate::particles::Particles;
 use crate::pickle::VERSION;
@@ -54,6 +55,7 @@ pub fn _restore<'py>(
         "BodyInertia" => made(py, PyBodyInertia(read(content)?)),
         "Payload" => made(py, PyPayload(read(content)?)),
         "Motion" => made(py, PyMotion::new(py, read(content)?)?),
+        "NextMotion" => Ok(Py::new(py, PyNextMotion::with_base(py, read(content)?)?)?.into_any()),
         "Finding" => made(py, PyFinding(read(content)?)),
         "NoiseModel" => made(py, PyNoiseModel(read(content)?)),
         "ForceTorqueSensor" => made(py, PyForceTorqueSensor(read(content)?)),

@@ -89,6 +89,8 @@ pub struct FilterEstimate {
     pub log_evidence: f64,
     /// Updates since the start or the last reset.
     pub updates: u64,
+    /// The external torque of the last update, `(nv,)` (Nm); empty before it.
+    pub torque: Vec<f64>,
 }
 
 impl FilterEstimate {
@@ -102,6 +104,7 @@ impl FilterEstimate {
             effective_samples: 0.0,
             log_evidence: 0.0,
             updates: 0,
+            torque: vec![],
         }
     }
 

@@ -86,6 +86,7 @@ impl FilterState {
         self.gate.reset();
         self.found.clear(Event::None);
         self.found.updates = 0;
+        self.found.torque.clear();
         self.cloud.clear();
     }
 
@@ -118,6 +119,7 @@ impl FilterState {
         }
         self.clock.tick();
         self.found.updates = self.clock.step;
+        self.found.torque.clone_from(&self.instant.torque);
     }
 
     /// Lets the particles take in a contact's torque.

@@ -139,6 +139,8 @@ impl StaticObstacleSampler {
             _ => self.follow(event, kept),
         }
         self.found.updates += 1;
+        self.found.torque.clear();
+        self.found.torque.extend_from_slice(tau_ext);
         self.stop.store(false, Ordering::Relaxed);
         Ok(&self.found)
     }
@@ -177,6 +179,7 @@ impl StaticObstacleSampler {
         self.measurements.clear();
         self.found.clear(Event::None);
         (self.found.updates, self.evidence, self.time) = (0, 0.0, None);
+        self.found.torque.clear();
     }
 
     /// Indices of the links that are looked on.

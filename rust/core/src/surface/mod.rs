@@ -123,6 +123,11 @@ impl Surface {
         self.solids.len() > 1 && self.sampler.hides(&self.solids, point, triangle)
     }
 
+    /// Whether a point is inside a closed part; parts that are not closed have no inside.
+    pub fn contains(&self, p: &Vector3<f64>) -> bool {
+        self.solids.iter().any(|solid| solid.contains(p, 0.0))
+    }
+
     /// Distance to the surface where it is less than `bound`, else `bound` (m), and the triangle of the nearest point if it is
     /// on a mesh; much faster than [`closest_point_from`](Self::closest_point_from) where the bound is small.
     pub(crate) fn distance_within(

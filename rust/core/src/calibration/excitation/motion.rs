@@ -70,6 +70,9 @@ impl Move {
 
     /// Position, velocity and acceleration of a joint, `time` after the move's start.
     pub fn joint(&self, joint: usize, time: f64) -> Jet {
+        if self.duration <= 0.0 {
+            return [self.from[joint], 0.0, 0.0];
+        }
         let x = (time / self.duration).clamp(0.0, 1.0);
         let rate = 1.0 / self.duration;
         let [s, ds, dds] = way(x);
@@ -162,6 +165,20 @@ impl Motion {
         motion
     }
 
+    /// Along a straight line from a checked configuration of a robot with a fixed base, from rest to rest. `step` is the way of
+    /// each joint (rad, m). The distance of no two links is checked.
+    pub(crate) fn line(robot: &Robot, q: &[f64], step: &[f64], duration: f64, dt: f64) -> Self {
+        let mut part = Move::rest(&positions(robot, q), duration);
+        part.travel.copy_from_slice(step);
+        let rows = (duration / dt).round() as usize + 1;
+        Motion::new(robot, vec![part], rows, dt, all_pairs(robot))
+    }
+
+    /// Without a row: the robot stays at a checked configuration.
+    pub(crate) fn none(robot: &Robot, q: &[f64]) -> Self {
+        Motion::new(robot, vec![Move::rest(&positions(robot, q), 0.0)], 0, 0.0, vec![])
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.time.len()
@@ -170,6 +187,11 @@ impl Motion {
     /// Whether there is no row.
     pub fn is_empty(&self) -> bool {
         self.time.is_empty()
+    }
+
+    /// How many configuration variables and velocity variables there are.
+    pub fn joints(&self) -> (usize, usize) {
+        (self.kinds.iter().map(|kind| kind.nq()).sum(), self.kinds.len())
     }
 
     /// Length (s).
@@ -210,6 +232,29 @@ pub(super) fn configuration(robot: &Robot, positions: impl IntoIterator<Item = f
     for (kind, position) in robot.joint_kinds().zip(positions) {
         push_position(kind, position, q);
     }
+}
+
+/// The inverse of [`configuration`]: the positions of a robot's joints, whose base is fixed.
+fn positions(robot: &Robot, q: &[f64]) -> Vec<f64> {
+    let mut positions = Vec::with_capacity(robot.nv());
+    for body in &robot.bodies[1..] {
+        positions.push(match body.kind {
+            JointKind::Continuous => q[body.idx_q + 1].atan2(q[body.idx_q]),
+            _ => q[body.idx_q],
+        });
+    }
+    positions
+}
+
+/// Every two links with a surface.
+fn all_pairs(robot: &Robot) -> Vec<(String, String)> {
+    let names: Vec<&String> =
+        robot.touchable_links().iter().map(|link| &robot.links()[link.get()].name).collect();
+    let pairs = names
+        .iter()
+        .enumerate()
+        .flat_map(|(k, first)| names[k + 1..].iter().map(move |second| (*first, *second)));
+    pairs.map(|(first, second)| (first.clone(), second.clone())).collect()
 }
 
 #[cfg(test)]
