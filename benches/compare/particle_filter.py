@@ -25,6 +25,9 @@ NEAR = 0.03  # [m]
 RUN = "reset()\nfor step in scene: update(step.q, step.tau_ext)"
 ROUNDS = 10  # of the others for one here: a run of the peers takes seconds
 MAX_US, MAX_US_TWO_THREADS = 5000.0, 3000.0
+# Poses that the sampler is fed, of which forty are in its window, and the noise of their torques.
+SAMPLED, RELATIVE = 60, 0.03
+MAX_US_SAMPLER = 100_000.0  # on average
 MIN_RATIO = 20.0
 MIN_STEPS_PER_SECOND = 2200.0
 MAX_GROWTH = 11.0  # for ten times the particles
@@ -43,6 +46,7 @@ def compare(pace: Pace) -> list[Comparison]:
         _two_threads(iiwa[0], iiwa[1], scene, pace),
         _growth(iiwa[0], iiwa[1], scene, pace),
         _few(*iiwa, scene, pace),
+        _sampler(iiwa[0], iiwa[1], pace),
     ]
 
 
@@ -104,6 +108,26 @@ def _few(
     ]
     task = f"particle filter, {name}, {FEW}"
     return Comparison(task, interleave(contestants, pace), max_us=1e6 / MIN_STEPS_PER_SECOND)
+
+
+def _sampler(name: str, robot: cs.Robot, pace: Pace) -> Comparison:
+    """Noisy torques, on the wall, until the window has been full for a while; without a peer."""
+    rng = np.random.default_rng(1)
+    scene = [
+        step._replace(tau_ext=step.tau_ext * (1.0 + RELATIVE * rng.normal(size=robot.nv)))
+        for step in pressed_sphere.path(robot, LINK, SAMPLED)
+    ]
+    with all_cores():
+        two, one = (cs.StaticObstacleSampler(robot, particles=PARTICLES, threads=n) for n in (2, 1))
+        for each in (two, one):
+            _check(each, scene, LINK)
+        contestants = [
+            _contestant("contactsense", two, scene),
+            _contestant("contactsense, one thread", one, scene),
+        ]
+        timings = interleave(contestants, replace(pace, clock=time.perf_counter))
+    task = f"sampler, {name}, {PARTICLES:,}, two threads, wall"
+    return Comparison(task, timings, max_us=MAX_US_SAMPLER)
 
 
 def _contestant(name: str, particles: Any, scene: list[pressed_sphere.Pressed], share: int = 1) -> Contestant:
