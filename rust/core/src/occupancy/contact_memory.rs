@@ -163,7 +163,7 @@ impl ContactMemory {
         if !(place.point.norm() < LARGEST && size > 0.5 && size < 2.0) {
             return Err("the point must be finite and the normal a unit vector");
         }
-        if !(place.covariance.norm() < LARGEST) {
+        if !(0.0..LARGEST).contains(&place.covariance.norm()) {
             return Err("the covariance must be finite");
         }
         if !(place.probability >= 0.0 && place.probability < LARGEST) {
