@@ -1,7 +1,7 @@
-"""A contact near the base is located by motions that are chosen for what they tell.
+"""A contact on the fourth link is located by motions that are chosen for what they tell.
 
-Three joints feel a contact on the third link, so that one pose leaves open where it is. `next_motion` chooses
-small motions that neither lose the contact nor press too hard, and says what it expects of each.
+`next_motion` chooses small motions that neither lose the contact nor press too hard, and says what it
+expects of each.
 
 Requires MuJoCo: pip install '.[sim]'
 """
@@ -14,11 +14,11 @@ from contactsense.sim.penalty import joint_torque
 
 MAX_FORCE = 60.0  # [N]
 MAX_STEP = np.deg2rad(1.0)  # of each joint
-MOTIONS = 6
+MOTIONS = 3
 
 robot = cs.Robot.named("iiwa14")
 touch = sim.touch_scene(
-    robot, "iiwa_link_3", kind="sphere", force_range=(10.0, 20.0), least_torque=1.0, seed=5
+    robot, "iiwa_link_4", kind="sphere", force_range=(10.0, 20.0), least_torque=1.0, seed=2
 )
 contact = touch.contact(robot)
 noise = sim.TorqueNoise(percent=3.0, newton_metres=0.02, seed=0)

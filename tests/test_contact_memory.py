@@ -16,7 +16,7 @@ RNG = np.random.default_rng(3)
 
 
 def depths(robot, q, points):
-    """(n,) distance of world points from the robot's body by coal, negative inside: a point is a tiny ball."""
+    """(n,) distance of world points from the robot by coal, negative inside: a point is a tiny ball."""
     model, geometry = robot.model, robot.geometry_model
     data, placed = model.createData(), geometry.createData()
     pin.updateGeometryPlacements(model, data, geometry, placed, q)

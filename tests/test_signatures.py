@@ -66,6 +66,8 @@ SIGNATURES = {
     "ContactMemory.known": "points",
     "ContactMemory.points": "",
     "ContactMemory.boxes": "*, least=0.5, most=1.0",
+    "ContactMemory.save": "path",
+    "ContactMemory.load": "path, robot",
     "ContactMemory.clear": "",
     "Motion.at": "time",
     "Motion.to_dict": "",
@@ -167,6 +169,8 @@ IN_PYTHON = {
     "Replay.to_mcap",
     "Replay.to_png",
     "ReplayedContact.to_dict",
+    # A static method, which the stub is not searched for.
+    "ContactMemory.load",
 }
 
 

@@ -10,6 +10,7 @@ from ._core import (
     ContactEstimate,
     ContactIsolator,
     ContactMap,
+    ContactMemory,
     ContactMonitor,
     ContactParticleFilter,
     ContactReport,
@@ -45,7 +46,6 @@ from .calibration import Calibration, calibrate
 from .errors import ContactSenseError, GeometryError, InputError, ModelError
 from .fleet import FleetReplay, replay_fleet
 from .log import Log, Reading, read_log
-from .memory import ContactMemory
 from .offline import Replay, ReplayedContact, replay
 from .robot import Robot
 from .viewer.view import View, view

@@ -2901,7 +2901,7 @@ def next_motion(
         (True, True)
     """
 
-@disjoint_base
+@final
 class ContactMemory:
     """Where obstacles are and where none are, fused from contacts and from the space that the robot's body has been in.
 
@@ -2929,7 +2929,8 @@ class ContactMemory:
         >>> robot = cs.Robot.named("iiwa14")
         >>> memory = cs.ContactMemory(robot, resolution=0.05)
         >>> memory.add_free(robot.neutral())
-        >>> bool(memory.is_free([[0.0, 0.0, 0.3]])[0])
+        >>> points, probabilities = memory.points()
+        >>> bool(memory.is_free(points).all())
         True
     """
 
@@ -3044,6 +3045,29 @@ class ContactMemory:
         Raises:
             InputError: Names the argument.
         """
+    def save(self, path: str | PathLike[str]) -> None:
+        """Writes all that is known as arrays of NumPy: `indices` (n, 3), `log_odds` (n,), and the options.
+
+        A voxel spans from `indices * resolution` to `(indices + 1) * resolution` in the world frame [m].
+
+        Args:
+            path: A file, which should end in ".npz".
+
+        Raises:
+            InputError: The file cannot be written.
+        """
+    @staticmethod
+    def load(path: str | PathLike[str], robot: Robot) -> ContactMemory:
+        """The memory that `save` wrote.
+
+        Args:
+            path: The file.
+            robot: The robot whose body and contacts are added from here on.
+
+        Raises:
+            InputError: The file cannot be read, or is none of `save`.
+        """
+    def __reduce__(self) -> tuple[Any, ...]: ...
     def clear(self) -> None:
         """Forgets all."""
     def _voxels(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

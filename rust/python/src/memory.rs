@@ -1,4 +1,4 @@
-//! `ContactMemory`, but for its files, which Python adds.
+//! `ContactMemory`; its files are written and read by Python.
 
 use std::sync::{Arc, Mutex, MutexGuard};
 
@@ -43,9 +43,10 @@ use crate::robot_argument::robot;
 ///     >>> robot = cs.Robot.named("iiwa14")
 ///     >>> memory = cs.ContactMemory(robot, resolution=0.05)
 ///     >>> memory.add_free(robot.neutral())
-///     >>> bool(memory.is_free([[0.0, 0.0, 0.3]])[0])
+///     >>> points, probabilities = memory.points()
+///     >>> bool(memory.is_free(points).all())
 ///     True
-#[pyclass(frozen, subclass, name = "ContactMemory", module = "contactsense")]
+#[pyclass(frozen, name = "ContactMemory", module = "contactsense")]
 pub struct PyContactMemory {
     memory: Mutex<ContactMemory>,
     robot: Py<PyRobot>,
@@ -275,6 +276,36 @@ impl PyContactMemory {
         Ok((read_only(lower), read_only(upper)))
     }
 
+    /// Writes all that is known as arrays of NumPy: `indices` (n, 3), `log_odds` (n,), and the options.
+    ///
+    /// A voxel spans from `indices * resolution` to `(indices + 1) * resolution` in the world frame [m].
+    ///
+    /// Args:
+    ///     path: A file, which should end in ".npz".
+    ///
+    /// Raises:
+    ///     InputError: The file cannot be written.
+    fn save(slf: &Bound<'_, Self>, path: &Bound<'_, PyAny>) -> PyResult<()> {
+        files(slf.py())?.call_method1("save", (slf, path)).map(drop)
+    }
+
+    /// The memory that `save` wrote.
+    ///
+    /// Args:
+    ///     path: The file.
+    ///     robot: The robot whose body and contacts are added from here on.
+    ///
+    /// Raises:
+    ///     InputError: The file cannot be read, or is none of `save`.
+    #[staticmethod]
+    fn load<'py>(path: &Bound<'py, PyAny>, robot: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        files(path.py())?.call_method1("load", (path, robot))
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        files(slf.py())?.call_method1("reduced", (slf,))
+    }
+
     /// Forgets all.
     fn clear(&self, py: Python<'_>) -> PyResult<()> {
         self.sole(py)?.clear();
@@ -316,6 +347,11 @@ impl PyContactMemory {
         let (robot, edge, known) = (self.robot.get().0.name(), memory.options().resolution, memory.len());
         Ok(format!("ContactMemory('{robot}', resolution={edge}, {known} voxels known)"))
     }
+}
+
+/// The module that writes and reads files.
+fn files(py: Python<'_>) -> PyResult<Bound<'_, PyModule>> {
+    py.import("contactsense.memory")
 }
 
 /// Defaults of what is free and what is occupied.

@@ -159,11 +159,11 @@ impl ContactMemory {
     }
 
     fn check(&self, place: &PossiblePlace) -> std::result::Result<(), &'static str> {
-        let (size, spread) = (place.normal.norm(), place.covariance.norm());
+        let size = place.normal.norm();
         if !(place.point.norm() < LARGEST && size > 0.5 && size < 2.0) {
             return Err("the point must be finite and the normal a unit vector");
         }
-        if !(spread.is_finite() && spread < LARGEST) {
+        if !(0.0..LARGEST).contains(&place.covariance.norm()) {
             return Err("the covariance must be finite");
         }
         if !(place.probability >= 0.0 && place.probability < LARGEST) {
