@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -68,9 +69,25 @@ def _beside_reference(
 
 
 def _two_threads(name: str, robot: cs.Robot, scene: list[pressed_sphere.Pressed], pace: Pace) -> Comparison:
+    return _beside_one_thread(
+        f"particle filter, {name}, {PARTICLES:,}, two threads, wall",
+        lambda threads: cs.ContactParticleFilter(robot, particles=PARTICLES, threads=threads),
+        scene,
+        pace,
+        MAX_US_TWO_THREADS,
+    )
+
+
+def _beside_one_thread(
+    task: str,
+    make: Callable[[int], Any],
+    scene: list[pressed_sphere.Pressed],
+    pace: Pace,
+    max_us: float,
+) -> Comparison:
     """On the wall: a process's time counts both threads."""
     with all_cores():
-        two, one = (cs.ContactParticleFilter(robot, particles=PARTICLES, threads=n) for n in (2, 1))
+        two, one = make(2), make(1)
         for each in (two, one):
             _check(each, scene, LINK)
         contestants = [
@@ -78,8 +95,7 @@ def _two_threads(name: str, robot: cs.Robot, scene: list[pressed_sphere.Pressed]
             _contestant("contactsense, one thread", one, scene),
         ]
         timings = interleave(contestants, replace(pace, clock=time.perf_counter))
-    task = f"particle filter, {name}, {PARTICLES:,}, two threads, wall"
-    return Comparison(task, timings, max_us=MAX_US_TWO_THREADS)
+    return Comparison(task, timings, max_us=max_us)
 
 
 def _growth(name: str, robot: cs.Robot, scene: list[pressed_sphere.Pressed], pace: Pace) -> Comparison:
@@ -111,23 +127,19 @@ def _few(
 
 
 def _sampler(name: str, robot: cs.Robot, pace: Pace) -> Comparison:
-    """Noisy torques, on the wall, until the window has been full for a while; without a peer."""
+    """Noisy torques, until the window has been full for a while; without a peer."""
     rng = np.random.default_rng(1)
     scene = [
         step._replace(tau_ext=step.tau_ext * (1.0 + RELATIVE * rng.normal(size=robot.nv)))
         for step in pressed_sphere.path(robot, LINK, SAMPLED)
     ]
-    with all_cores():
-        two, one = (cs.StaticObstacleSampler(robot, particles=PARTICLES, threads=n) for n in (2, 1))
-        for each in (two, one):
-            _check(each, scene, LINK)
-        contestants = [
-            _contestant("contactsense", two, scene),
-            _contestant("contactsense, one thread", one, scene),
-        ]
-        timings = interleave(contestants, replace(pace, clock=time.perf_counter))
-    task = f"sampler, {name}, {PARTICLES:,}, two threads, wall"
-    return Comparison(task, timings, max_us=MAX_US_SAMPLER)
+    return _beside_one_thread(
+        f"sampler, {name}, {PARTICLES:,}, two threads, wall",
+        lambda threads: cs.StaticObstacleSampler(robot, particles=PARTICLES, threads=threads),
+        scene,
+        pace,
+        MAX_US_SAMPLER,
+    )
 
 
 def _contestant(name: str, particles: Any, scene: list[pressed_sphere.Pressed], share: int = 1) -> Contestant:

@@ -1,6 +1,6 @@
 //! Small motions under which no hypothesis loses the contact or presses too hard.
 
-use super::belief::Obstacle;
+use super::obstacle::Obstacle;
 use super::prediction::Prediction;
 use crate::error::Result;
 use crate::math::random::Stream;

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::belief::Obstacle;
+use super::obstacle::Obstacle;
 use super::prediction::Prediction;
 use crate::math::random::Stream;
 use crate::torque::TorqueNoise;

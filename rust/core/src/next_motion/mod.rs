@@ -9,6 +9,7 @@
 mod belief;
 mod candidates;
 mod information;
+mod obstacle;
 mod options;
 mod planner;
 mod prediction;

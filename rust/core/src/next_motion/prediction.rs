@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::belief::Obstacle;
+use super::obstacle::Obstacle;
 use crate::particle::signed;
 use crate::robot::{Kinematics, Robot};
 use crate::spatial::Pose;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::contact_memory::Voxel;
+use super::voxel::Voxel;
 
 /// An axis-aligned box of voxels.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,23 +8,10 @@ use nalgebra::{Matrix3, Vector3};
 use super::boxes::{boxes, VoxelBox};
 use super::options::MemoryOptions;
 use super::swept::swept;
+use super::voxel::Voxel;
 use crate::error::{Error, Result};
 use crate::math::random::Stream;
 use crate::robot::{Robot, LARGEST};
-
-/// A voxel by its place in the grid: it begins at so many resolutions from the origin of the world.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(super) struct Voxel(pub [i32; 3]);
-
-impl Voxel {
-    fn at(point: &Vector3<f64>, resolution: f64) -> Self {
-        Voxel([0, 1, 2].map(|axis| (point[axis] / resolution).floor() as i32))
-    }
-
-    pub fn centre(self, resolution: f64) -> Vector3<f64> {
-        Vector3::from(self.0.map(|index| (f64::from(index) + 0.5) * resolution))
-    }
-}
 
 /// A place where a contact may be, world frame.
 #[derive(Debug, Clone, Copy, PartialEq)]

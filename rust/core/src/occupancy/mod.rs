@@ -8,6 +8,7 @@ mod boxes;
 mod contact_memory;
 mod options;
 mod swept;
+mod voxel;
 
 pub use boxes::VoxelBox;
 pub use contact_memory::{ContactMemory, PossiblePlace};

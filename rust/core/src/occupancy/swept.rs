@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::contact_memory::Voxel;
+use super::voxel::Voxel;
 use crate::robot::{Kinematics, Robot};
 
 /// Calls `found` with each voxel whose centre is inside a closed part of a link, at a checked configuration. A voxel that is in
