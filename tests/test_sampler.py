@@ -152,7 +152,7 @@ def test_bad_input_names_the_argument_and_changes_nothing() -> None:
 
 
 def test_an_obstacle_that_creeps_is_followed() -> None:
-    """A ball that goes sideways by 1 mm a pose, its force the same."""
+    """A ball that goes sideways by 0.5 mm a pose, its force the same."""
     robot = arm()
     run = explored(5, 41)
     errors = {}
@@ -168,7 +168,7 @@ def test_an_obstacle_that_creeps_is_followed() -> None:
         across /= np.linalg.norm(across)
         off = []
         for k, q in enumerate(run.q[ROWS]):
-            here = centre + 1e-3 * k * across
+            here = centre + 0.5e-3 * k * across
             pose = robot.link_pose(q, link)
             near = surface.closest_points(((here - pose[:3, 3]) @ pose[:3, :3])[None])
             point = pose[:3, :3] @ near.points[0] + pose[:3, 3]
@@ -177,8 +177,8 @@ def test_an_obstacle_that_creeps_is_followed() -> None:
             torque *= 1.0 + 0.02 * generator.standard_normal(7)
             estimate = sampler.update(q, torque, time=0.2 * k)
             off.append(np.linalg.norm(estimate.point - point))
-        errors[forgetting] = float(np.mean(off[10:]))
-    assert errors[1.0] < 0.01, errors
+        errors[forgetting] = float(np.median(off[20:]))
+    assert errors[1.0] < 0.005, errors
     assert errors[1.0] < 0.8 * errors[None], errors
 
 

@@ -46,6 +46,7 @@ __all__ = [
     "RayHits",
     "Reaction",
     "Robot",
+    "StaticObstacleSampler",
     "Surface",
     "SurfaceSamples",
     "ToolLoad",

@@ -4,12 +4,17 @@ use crate::particle::{Instant, NEW_POSE};
 use crate::spatial::Pose;
 use crate::torque::{Frame, Target};
 
+/// A torque of so many standard deviations is clearly above its noise.
+const CLEAR: f64 = 3.0;
+
 /// One pose with its torques.
 #[derive(Debug, Clone)]
 pub(super) struct Measurement {
     /// One a link of the robot.
     pub links: Vec<Frame>,
     pub target: Target,
+    /// Torques that are clearly above their noise: the others tell nothing of how much greater it is in proportion to the torque.
+    pub rows: f64,
     /// How much it counted before the newest one came, and counts now: from zero to one.
     pub before: f64,
     pub now: f64,
@@ -26,8 +31,8 @@ pub(super) struct Measurements {
     dropped: Option<usize>,
     /// Share that is kept of the measurements before the newest one.
     pub kept: f64,
-    /// How many count before the newest one came, and now, with their shares.
-    pub counts: [f64; 2],
+    /// Rows that count before the newest one came, and now.
+    pub rows: [f64; 2],
     /// Where links were at the first touch, one a link.
     pub first: Vec<Pose>,
     most: usize,
@@ -38,7 +43,7 @@ impl Measurements {
     pub fn new(instant: &Instant, most: usize) -> Self {
         let links = instant.frames.links.clone();
         let first = links.iter().map(|frame| frame.pose).collect();
-        let one = Measurement { links, target: instant.target.clone(), before: 0.0, now: 0.0 };
+        let one = Measurement { links, target: instant.target.clone(), rows: 0.0, before: 0.0, now: 0.0 };
         // One more than count: for that which no longer does.
         Measurements {
             all: vec![one; most + 1],
@@ -46,7 +51,7 @@ impl Measurements {
             scattered: Vec::with_capacity(most + 1),
             dropped: None,
             kept: 1.0,
-            counts: [0.0; 2],
+            rows: [0.0; 2],
             first,
             most,
         }
@@ -115,11 +120,20 @@ impl Measurements {
             measurement.links[link].copy(&instant.frames.links[link]);
         }
         measurement.target.copy(&instant.target, &instant.frames.wanted);
+        let clear = instant
+            .torque
+            .iter()
+            .zip(&instant.deviation)
+            .filter(|(torque, noise)| torque.abs() > CLEAR * **noise);
+        measurement.rows = clear.count() as f64;
         (measurement.before, measurement.now) = (0.0, 1.0);
         self.order.push(free);
         self.scatter();
         let sum = |share: fn(&Measurement) -> f64| self.scattered().map(share).sum();
-        self.counts = [sum(|measurement| measurement.before), sum(|measurement| measurement.now)];
+        self.rows = [
+            sum(|measurement| measurement.before * measurement.rows),
+            sum(|measurement| measurement.now * measurement.rows),
+        ];
     }
 
     fn scatter(&mut self) {

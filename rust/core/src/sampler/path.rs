@@ -81,8 +81,8 @@ impl ContactPath<'_> {
 
     /// What the densities can be at most, whatever other measurements say.
     fn most(&self, before: &Sums, now: &Sums) -> Logs {
-        let [count_before, count_now] = self.measurements.counts;
-        let (start, end) = (self.prior.most(before, count_before), self.prior.most(now, count_now));
+        let [rows_before, rows_now] = self.measurements.rows;
+        let (start, end) = (self.prior.most(before, rows_before), self.prior.most(now, rows_now));
         Logs { start, added: end - start }
     }
 
@@ -111,6 +111,19 @@ impl ContactPath<'_> {
     }
 
     fn touch(
+        &self,
+        surface: &Surface,
+        claim: &Claim,
+        anchor: &Vector3<f64>,
+        measurement: &Measurement,
+        triangle: Option<u32>,
+    ) -> Touch {
+        let mut touch = self.contact(surface, claim, anchor, measurement, triangle);
+        touch.sums.rows = measurement.rows;
+        touch
+    }
+
+    fn contact(
         &self,
         surface: &Surface,
         claim: &Claim,

@@ -333,11 +333,7 @@ fn path<'a>(
         robot,
         measurements,
         models,
-        prior: Prior {
-            force: options.force_range,
-            stiffness: options.stiffness_range,
-            torques: robot.nv() as f64,
-        },
+        prior: Prior { force: options.force_range, stiffness: options.stiffness_range },
         force_model: options.force_model,
         log_radius: options.radius_range.map(f64::ln),
     }

@@ -19,7 +19,8 @@ pub(super) struct Sums {
     target: f64,
     /// What the freedom of forces that are integrated out already costs, twice as a log-likelihood.
     cost: f64,
-    count: f64,
+    /// Torques that tell of the noise.
+    pub rows: f64,
 }
 
 impl Sums {
@@ -30,14 +31,14 @@ impl Sums {
             product: [fit.product, fit.product * deeper],
             target: fit.target,
             cost: 2.0 * fit.penalty,
-            count: 1.0,
+            rows: 0.0,
         }
     }
 
     /// Of one measurement, from the Gram matrix of the torques of `a` and `b`, the products with the measured ones, and their
     /// squared norm.
     pub fn of_two(gain: [f64; 3], product: [f64; 2], target: f64) -> Self {
-        Sums { gain, product, target, cost: 0.0, count: 1.0 }
+        Sums { gain, product, target, cost: 0.0, rows: 0.0 }
     }
 
     /// Of one measurement with a force of its own along the normal, which is integrated out; and the likeliest one (N).
@@ -46,7 +47,7 @@ impl Sums {
         let target = (fit.target + force * (force * fit.gain - 2.0 * fit.product)).max(0.0);
         let width = width(force, prior.force);
         let cost = 2.0 * fit.penalty + (1.0 + fit.gain * width * width / TAU).ln();
-        (Sums { target, cost, count: 1.0, ..Sums::default() }, force)
+        (Sums { target, cost, rows: 0.0, ..Sums::default() }, force)
     }
 
     /// Adds so many times another.
@@ -55,7 +56,7 @@ impl Sums {
         self.product.iter_mut().zip(other.product).for_each(|(sum, x)| *sum += share * x);
         self.target += share * other.target;
         self.cost += share * other.cost;
-        self.count += share * other.count;
+        self.rows += share * other.rows;
     }
 
     /// So many times itself.
@@ -75,8 +76,6 @@ fn width(value: f64, [least, greatest]: [f64; 2]) -> f64 {
 pub(super) struct Prior {
     pub force: [f64; 2],
     pub stiffness: [f64; 2],
-    /// Torques that one measurement has.
-    pub torques: f64,
 }
 
 /// A contact with force and stiffness integrated out.
@@ -95,35 +94,36 @@ impl Prior {
     /// prior: what the torques do not show costs nothing.
     pub fn integrate(&self, sums: &Sums) -> Marginal {
         let best = self.best(sums);
-        if sums.count == 0.0 {
-            return Marginal { log: 0.0, ..best };
-        }
         let (force, stiffness) = (width(best.force, self.force), width(best.stiffness, self.stiffness));
-        let noise = self.noise(best.misfit, sums.count);
+        let noise = self.noise(best.misfit, sums.rows);
         let [gain, gain_e, gain_ee] = sums.gain.map(|gain| gain / (TAU * noise));
         // Of one plus the precision in units of the widths: at least one but for rounding.
         let determinant = (1.0 + gain * force * force) * (1.0 + gain_ee * stiffness * stiffness)
             - (gain_e * force * stiffness).powi(2);
         Marginal {
-            log: -0.5 * (self.weighed(best.misfit, sums.count) + sums.cost + determinant.max(1.0).ln()),
+            log: -0.5 * (self.weighed(best.misfit, sums.rows) + sums.cost + determinant.max(1.0).ln()),
             ..best
         }
     }
 
-    /// The log-likelihood at most, whatever other measurements say, of which there are so many in all: each can only lessen it.
-    pub fn most(&self, sums: &Sums, count: f64) -> f64 {
-        -0.5 * (self.weighed(self.best(sums).misfit, count) + sums.cost)
+    /// The log-likelihood at most, whatever other measurements say, which have so many rows in all: each can only lessen it.
+    pub fn most(&self, sums: &Sums, rows: f64) -> f64 {
+        -0.5 * (self.weighed(self.best(sums).misfit, rows) + sums.cost)
     }
 
     /// By how much the variance of the torques' noise is greater than stated: what explains the misfit best, and never less than one.
-    fn noise(&self, misfit: f64, count: f64) -> f64 {
-        (misfit / (count * self.torques)).max(1.0)
+    fn noise(&self, misfit: f64, rows: f64) -> f64 {
+        if rows > 0.0 {
+            (misfit / rows).max(1.0)
+        } else {
+            1.0
+        }
     }
 
     /// The misfit with noise of that variance, twice as a log-likelihood with its sign turned.
-    fn weighed(&self, misfit: f64, count: f64) -> f64 {
-        let noise = self.noise(misfit, count);
-        misfit / noise + count * self.torques * noise.ln()
+    fn weighed(&self, misfit: f64, rows: f64) -> f64 {
+        let noise = self.noise(misfit, rows);
+        misfit / noise + rows * noise.ln()
     }
 
     /// The force within its range that explains one measurement best (N).
@@ -182,7 +182,7 @@ impl Prior {
 mod tests {
     use super::*;
 
-    const PRIOR: Prior = Prior { force: [1.0, 100.0], stiffness: [3e2, 3e4], torques: 7.0 };
+    const PRIOR: Prior = Prior { force: [1.0, 100.0], stiffness: [3e2, 3e4] };
 
     fn measured(force: f64, stiffness: f64) -> Sums {
         let mut sums = Sums::default();
