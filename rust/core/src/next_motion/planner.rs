@@ -38,6 +38,21 @@ impl NothingFound {
 }
 
 /// A motion in contact, and what is expected of it.
+///
+/// ```
+/// use contactsense::next_motion::{next_motion, NextMotionOptions, NothingFound};
+/// use contactsense::particle::{ContactParticleFilter, FilterOptions};
+/// use contactsense::robot::Robot;
+///
+/// let robot = std::sync::Arc::new(Robot::example_arm());
+/// let options = FilterOptions { particles: 500, ..FilterOptions::default() };
+/// let filter = ContactParticleFilter::new(robot.clone(), options)?;
+/// // Nothing is touched yet.
+/// let estimate = &filter.estimate().estimate;
+/// let next = next_motion(&robot, estimate, None, &[], &[0.4; 7], &NextMotionOptions::new(60.0, 0.03))?;
+/// assert_eq!(next.nothing_found, Some(NothingFound::NoContact));
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NextMotion {

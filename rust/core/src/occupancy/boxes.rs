@@ -5,6 +5,19 @@ use std::collections::BTreeSet;
 use super::voxel::Voxel;
 
 /// An axis-aligned box of voxels.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::occupancy::{ContactMemory, MemoryOptions};
+/// use contactsense::robot::Robot;
+///
+/// let mut memory = ContactMemory::new(Arc::new(Robot::example_arm()), MemoryOptions::default())?;
+/// memory.add_free(&[0.4; 7])?;
+/// let free = memory.boxes(0.0, 0.4);
+/// assert!(!free.is_empty() && (0..3).all(|axis| free[0].lower[axis] < free[0].upper[axis]));
+/// # Ok::<(), contactsense::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VoxelBox {
     /// Corner with the least coordinates, world frame (m).

@@ -14,6 +14,20 @@ use crate::math::random::Stream;
 use crate::robot::{Robot, LARGEST};
 
 /// A place where a contact may be, world frame.
+///
+/// ```
+/// use contactsense::nalgebra::{Matrix3, Vector3};
+/// use contactsense::occupancy::PossiblePlace;
+///
+/// let place = PossiblePlace {
+///     point: Vector3::new(0.5, 0.0, 0.5),
+///     normal: Vector3::x(),
+///     covariance: Matrix3::identity() * 1e-6,
+///     probability: 0.7,
+/// };
+/// let other = PossiblePlace { point: -place.point, probability: 0.3, ..place };
+/// assert_eq!(other.normal, place.normal);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PossiblePlace {
     /// On the robot's surface (m).
