@@ -184,7 +184,7 @@ impl Believed<'_> {
         let (force, misfit) = match self.torque {
             Some(torque) => self.here.fit(link, &at, torque, deviation),
             None => {
-                let pushed = -normal * -local.force.dot(&normal);
+                let pushed = normal * local.force.dot(&normal);
                 let torque = self.here.torque(link, &local.point, &pushed);
                 (self.here.fit(link, &at, &torque, deviation).0, 0.0)
             }
