@@ -4,7 +4,6 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use contactsense::nalgebra::{Matrix3, Vector3};
 use contactsense::occupancy::{ContactMemory, MemoryOptions, PossiblePlace};
-use contactsense::particle::Mode;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
@@ -370,12 +369,12 @@ fn share(name: &str, object: &Bound<'_, PyAny>) -> PyResult<f64> {
 /// Where a contact may be.
 fn places(contact: &Bound<'_, PyAny>) -> PyResult<Vec<PossiblePlace>> {
     if let Ok(estimate) = contact.cast::<PyContactEstimate>() {
-        return Ok(estimate.get().modes_now().iter().map(of_mode).collect());
+        return Ok(estimate.get().modes_now().iter().map(PossiblePlace::of_mode).collect());
     }
     if let Ok(found) = contact.cast::<PyContact>() {
         let modes = found.get().modes_now();
         if !modes.is_empty() {
-            return Ok(modes.iter().map(of_mode).collect());
+            return Ok(modes.iter().map(PossiblePlace::of_mode).collect());
         }
         return found.get().one_place().map(|place| vec![place]).ok_or_else(|| {
             input(
@@ -404,16 +403,4 @@ fn place(
         covariance.try_into().map_err(|_| input(py, "covariance: expected shape (3, 3)".into()))?;
     let covariance = Matrix3::from_fn(|i, k| 0.5 * (covariance[i][k] + covariance[k][i]));
     Ok(PossiblePlace { point: point.into(), normal: normal.into(), covariance, probability: 1.0 })
-}
-
-/// A mode is spread along the surface.
-fn of_mode(mode: &Mode) -> PossiblePlace {
-    let normal = if mode.force.dot(&mode.normal) > 0.0 { -mode.normal } else { mode.normal };
-    let across = Matrix3::identity() - normal * normal.transpose();
-    PossiblePlace {
-        point: mode.point,
-        normal,
-        covariance: across * (0.5 * mode.spread * mode.spread),
-        probability: mode.probability,
-    }
 }

@@ -11,6 +11,7 @@ use super::swept::swept;
 use super::voxel::Voxel;
 use crate::error::{Error, Result};
 use crate::math::random::Stream;
+use crate::posterior::Mode;
 use crate::robot::{Robot, LARGEST};
 
 /// A place where a contact may be, world frame.
@@ -38,6 +39,20 @@ pub struct PossiblePlace {
     pub covariance: Matrix3<f64>,
     /// Of this place among all that are given; they need not sum to one.
     pub probability: f64,
+}
+
+impl PossiblePlace {
+    /// That of a mode, which is spread along the surface.
+    pub fn of_mode(mode: &Mode) -> Self {
+        let normal = mode.pushed_normal();
+        let across = Matrix3::identity() - normal * normal.transpose();
+        PossiblePlace {
+            point: mode.point,
+            normal,
+            covariance: across * (0.5 * mode.spread * mode.spread),
+            probability: mode.probability,
+        }
+    }
 }
 
 /// Points that stand for the distribution of a place.
