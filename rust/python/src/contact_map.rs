@@ -205,6 +205,7 @@ impl PyMapEstimate {
             &content.found;
         let event = if estimate.contact.is_some() { Event::Started } else { Event::None };
         let base = FilterEstimate {
+            others: vec![],
             estimate: estimate.clone(),
             event,
             explained: *explained,

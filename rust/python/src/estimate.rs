@@ -143,7 +143,7 @@ pub const ATTRIBUTES: [&str; 16] = [
     "time",
 ];
 
-/// The contact as a filter sees it.
+/// The contact as a filter or a sampler sees it, and others beside it.
 ///
 /// Frozen; can be pickled and copied.
 ///
@@ -275,6 +275,21 @@ impl PyContactEstimate {
         self.modes.get(py, || modes(py, &self.names, &self.found.estimate.modes))
     }
 
+    /// One estimate for each contact, of which this is the first; empty without contact.
+    ///
+    /// More than one only where several contacts are looked for (`max_contacts`). From update to update they stay in the same order
+    /// as long as there are as many.
+    #[getter]
+    fn contacts<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let (py, own) = (slf.py(), slf.get());
+        let mut all: Vec<Bound<'py, Self>> = own.contact().then(|| slf.clone()).into_iter().collect();
+        for other in own.found.others.iter().filter(|other| other.contact.is_some()) {
+            let found = FilterEstimate { estimate: other.clone(), others: vec![], ..own.found.clone() };
+            all.push(Bound::new(py, Self::new(own.names.clone(), own.links.clone(), found, own.time))?);
+        }
+        PyTuple::new(py, all)
+    }
+
     /// Whether the data do not say which link, or where on it, or motion has not confirmed yet that it is a single push.
     ///
     /// Confirmed: one obstacle that stays explains the torques at the last poses, touches the link near `point`, and its
@@ -318,9 +333,13 @@ impl PyContactEstimate {
     /// All attributes by name.
     ///
     /// Returns:
-    ///     Plain Python values: numbers, strings, lists in place of arrays and tuples, and dicts in place of modes.
+    ///     Plain Python values: numbers, strings, lists in place of arrays and tuples, and dicts in place of modes and of
+    ///     `contacts`.
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        plain_dict(slf.as_any(), &ATTRIBUTES)
+        let dict = plain_dict(slf.as_any(), &ATTRIBUTES)?;
+        let each = Self::contacts(slf)?.iter().map(|contact| plain_dict(&contact, &ATTRIBUTES));
+        dict.set_item("contacts", each.collect::<PyResult<Vec<_>>>()?)?;
+        Ok(dict)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {

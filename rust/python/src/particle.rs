@@ -230,6 +230,7 @@ impl PyContactParticleFilter {
         let filter = self.sole(py)?;
         let columns = filter.particles();
         let rows = (0..columns.len()).map(|k| Row {
+            contact: 0,
             link: columns.link[k] as usize,
             point: filter.point(k).into(),
             normal: filter.normal(k).into(),

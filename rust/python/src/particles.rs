@@ -19,6 +19,8 @@ use crate::robot::PyRobot;
 ///     (500, 3)
 #[pyclass(frozen, get_all, module = "contactsense")]
 pub struct Particles {
+    /// Number of the contact, `(n,)`: zero where there is one. Of several contacts, the rows of the second follow those of the first.
+    pub contact: Py<PyArray1<i64>>,
     /// Index into `robot.link_names`, `(n,)`.
     pub link: Py<PyArray1<i64>>,
     /// Points on the surface, `(n, 3)`, world frame [m].
@@ -29,12 +31,13 @@ pub struct Particles {
     pub force: Py<PyArray1<f64>>,
     /// Stiffness of the contact, `(n,)` [N/m].
     pub stiffness: Py<PyArray1<f64>>,
-    /// Weights, `(n,)`, which sum to one.
+    /// Weights, `(n,)`, which sum to one for each contact.
     pub weight: Py<PyArray1<f64>>,
 }
 
-/// One particle; the link by its number in the core, force along the inward normal.
+/// One contact of a particle; the link by its number in the core, force along the inward normal.
 pub struct Row {
+    pub contact: usize,
     pub link: usize,
     pub point: [f64; 3],
     pub normal: [f64; 3],
@@ -49,7 +52,9 @@ impl Particles {
         let touchable = robot.0.touchable_links();
         let number = |link: usize| touchable.iter().position(|l| l.get() == link).map_or(-1, |k| k as i64);
         let column = |f: fn(&Row) -> f64| numbers(py, &rows.iter().map(f).collect::<Vec<_>>()).unbind();
+        let contact = PyArray1::from_iter(py, rows.iter().map(|row| row.contact as i64));
         Ok(Particles {
+            contact: read_only(contact).unbind(),
             link: read_only(PyArray1::from_iter(py, rows.iter().map(|row| number(row.link)))).unbind(),
             point: read_only(from_rows::<3>(py, rows.iter().map(|row| row.point))?).unbind(),
             normal: read_only(from_rows::<3>(py, rows.iter().map(|row| row.normal))?).unbind(),
@@ -60,4 +65,4 @@ impl Particles {
     }
 }
 
-arrays_alone!(Particles, "Particles", link, point, normal, force, stiffness, weight);
+arrays_alone!(Particles, "Particles", contact, link, point, normal, force, stiffness, weight);

@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use contactsense::robot::LinkIndex;
 use contactsense::sampler::{ContactModel, SamplerOptions, StaticObstacleSampler};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -14,6 +15,7 @@ use crate::estimate::PyContactEstimate;
 use crate::filter_options::Choice;
 use crate::names::Names;
 use crate::particles::{Particles, Row};
+use crate::returned::numbers;
 use crate::robot::PyRobot;
 use crate::robot_argument::robot;
 use crate::search_arguments::SearchArguments;
@@ -23,7 +25,7 @@ use crate::signals::with_signals;
 /// From so many particles on an update may take a second and more, and Ctrl-C is looked for meanwhile.
 const LONG: usize = 20_000;
 
-/// Finds one contact anywhere on a robot from all joint torques that were measured of it (algorithm C3).
+/// Finds contacts anywhere on a robot from all joint torques that were measured of them (algorithm C3).
 ///
 /// Where `ContactParticleFilter` forgets what earlier motions taught, each particle here is an obstacle that stays where it is
 /// for good, and predicts the torques of a whole window of poses. Particles are taken from one measurement to the next by
@@ -37,6 +39,9 @@ const LONG: usize = 20_000;
 ///     models: What the contact may be with, one name or several: "obstacle" (round, stays where it is), "person" (the point
 ///         stays on the link, the force changes as it likes), "both" (the point stays on the link, and a spring ties it to
 ///         where it was in the world). Of several, `model_probabilities` says which explains the torques.
+///     max_contacts: Contacts that there may be at the same time, 1 to 4. Of more than one, all are with obstacles that began to
+///         touch together, and an update takes several times as long: it follows as many particles for each number of contacts.
+///         `number_probabilities` says how many there are, `estimate.contacts` has an estimate of each.
 ///     window: Poses whose torques are kept, 2 to 1000.
 ///     forgetting_time: Time after which a measurement counts for a part in e of what it did when it was new [s], so that
 ///         an obstacle that creeps is followed. None for obstacles that stay.
@@ -90,11 +95,11 @@ impl PyStaticObstacleSampler {
 #[pymethods]
 impl PyStaticObstacleSampler {
     #[new]
-    #[pyo3(signature = (robot, *, particles=None, models=None, window=None, forgetting_time=None, moves=None,
+    #[pyo3(signature = (robot, *, particles=None, models=None, max_contacts=None, window=None, forgetting_time=None, moves=None,
         measurement=Choice::of("normal"), friction=None, links=None, seed=None, force_range=None, stiffness_range=None,
         radius_range=None, threads=None, torque_noise=None, relative_noise=None, torque_threshold=None, noise=None,
         calibration=None),
-        text_signature = "(robot, *, particles=10_000, models='obstacle', window=40, forgetting_time=None, moves=2, \
+        text_signature = "(robot, *, particles=10_000, models='obstacle', max_contacts=1, window=40, forgetting_time=None, moves=2, \
             measurement='normal', friction=0.5, links=None, seed=0, force_range=(1, 100), stiffness_range=(3e2, 3e4), \
             radius_range=(5e-3, 1.0), threads=1, torque_noise=0.02, relative_noise=0.03, torque_threshold=0.2, noise=None, \
             calibration=None)")]
@@ -103,6 +108,7 @@ impl PyStaticObstacleSampler {
         #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
         particles: Option<&Bound<'_, PyAny>>,
         models: Option<&Bound<'_, PyAny>>,
+        max_contacts: Option<&Bound<'_, PyAny>>,
         window: Option<&Bound<'_, PyAny>>,
         forgetting_time: Option<Number>,
         moves: Option<&Bound<'_, PyAny>>,
@@ -142,9 +148,11 @@ impl PyStaticObstacleSampler {
         if let Some(models) = models {
             options.models = read_models(py, models)?;
         }
-        for (name, object, number) in
-            [("window", window, &mut options.window), ("moves", moves, &mut options.moves)]
-        {
+        for (name, object, number) in [
+            ("max_contacts", max_contacts, &mut options.max_contacts),
+            ("window", window, &mut options.window),
+            ("moves", moves, &mut options.moves),
+        ] {
             if let Some(object) = object {
                 *number = whole(name, object, 1000)? as usize;
             }
@@ -153,6 +161,7 @@ impl PyStaticObstacleSampler {
         let kept = given.used(py, &common)?;
         let said: Vec<&str> = options.models.iter().map(|model| model.name()).collect();
         kept.set_item("models", pyo3::types::PyTuple::new(py, said)?)?;
+        kept.set_item("max_contacts", options.max_contacts)?;
         kept.set_item("window", options.window)?;
         kept.set_item("forgetting_time", options.forgetting_time)?;
         kept.set_item("moves", options.moves)?;
@@ -255,11 +264,23 @@ impl PyStaticObstacleSampler {
         Ok(self.sole(py)?.total_log_evidence())
     }
 
-    /// The particles after the last update, one row each; a read-only copy.
+    /// Probability that there are one, two, ... contacts, `(max_contacts,)`; all zero without a contact. A new array at every access.
+    ///
+    /// Each number is as probable as the others beforehand.
+    #[getter]
+    fn number_probabilities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(numbers(py, self.sole(py)?.number_probabilities()))
+    }
+
+    /// The particles after the last update, one row a contact of each, of the most probable number of contacts; a read-only copy.
     #[getter]
     fn particles(&self, py: Python<'_>) -> PyResult<Particles> {
         let sampler = self.sole(py)?;
-        let rows = (0..sampler.weights().len()).filter_map(|k| sampler.particle(k)).map(|particle| Row {
+        let count = sampler.weights().len();
+        let all = (0..sampler.contacts()).flat_map(|contact| (0..count).map(move |k| (k, contact)));
+        let found = all.filter_map(|(k, contact)| sampler.particle(k, contact).map(|found| (contact, found)));
+        let rows = found.map(|(contact, particle)| Row {
+            contact,
             link: particle.link.get(),
             point: particle.point.into(),
             normal: particle.normal.into(),

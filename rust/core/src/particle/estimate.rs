@@ -73,6 +73,8 @@ impl Event {
 pub struct FilterEstimate {
     /// The contact. It is ambiguous also as long as motion has not confirmed that it is a push.
     pub estimate: ContactEstimate,
+    /// Contacts beside it, where several may be: one for each that may be, without a contact where there is none.
+    pub others: Vec<ContactEstimate>,
     /// What happened.
     pub event: Event,
     /// Whether a push by one obstacle that stays explains the torques at the last poses: what is left over is within three
@@ -96,8 +98,14 @@ pub struct FilterEstimate {
 impl FilterEstimate {
     /// No contact; space for so many links and modes.
     pub(crate) fn new(links: usize, modes: usize) -> Self {
+        Self::of_several(links, modes, 1)
+    }
+
+    /// No contact; space for so many contacts, each with so many links and modes.
+    pub(crate) fn of_several(links: usize, modes: usize, contacts: usize) -> Self {
         FilterEstimate {
             estimate: ContactEstimate::new(links, modes),
+            others: vec![ContactEstimate::new(links, modes); contacts - 1],
             event: Event::None,
             explained: true,
             residual: 0.0,
@@ -118,6 +126,7 @@ impl FilterEstimate {
     /// No contact, after what happened.
     pub(crate) fn clear(&mut self, event: Event) {
         self.estimate.clear();
+        self.others.iter_mut().for_each(ContactEstimate::clear);
         self.event = event;
         (self.explained, self.residual) = (true, 0.0);
         (self.effective_samples, self.log_evidence) = (0.0, 0.0);

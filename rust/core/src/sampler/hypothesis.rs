@@ -1,4 +1,4 @@
-//! One hypothesis of a contact.
+//! One hypothesis of the contacts.
 
 use nalgebra::Vector3;
 
@@ -60,57 +60,86 @@ pub(super) struct Forces {
     pub spring: Vector3<f64>,
 }
 
-/// A contact at one pose.
+/// A contact at one pose: point and outward normal, link frame, and the triangle that holds the point.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Touch {
-    /// Point and outward normal, link frame, and the triangle that holds the point.
     pub point: Vector3<f64>,
     pub normal: Vector3<f64>,
     pub triangle: Option<u32>,
     pub forces: Forces,
-    pub sums: Sums,
 }
 
-/// A claim, and what the measurements say of it.
-#[derive(Debug, Clone)]
-pub(super) struct Hypothesis {
+impl Touch {
+    /// Where a claim has it, without a force.
+    pub fn of(claim: &Claim) -> Self {
+        let SurfacePoint { point, normal, triangle } = claim.place;
+        Touch { point, normal, triangle, forces: Forces::default() }
+    }
+}
+
+/// One contact of a hypothesis.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Contact {
     pub claim: Claim,
     /// World frame (m): the obstacle's centre, or where the point was first.
     pub anchor: Vector3<f64>,
-    /// Of the measurements that count now.
-    pub now: Sums,
     /// At the newest pose.
     pub touch: Touch,
-    pub logs: Logs,
-    pub marginal: Marginal,
 }
 
-impl Hypothesis {
-    /// The force on the link at the newest pose, link frame (N).
-    pub fn force(&self) -> Vector3<f64> {
-        let Forces { known, first, spring } = self.touch.forces;
-        let force = known + first * self.marginal.force + spring * self.marginal.stiffness;
+/// Claims of some contacts, and what the measurements say of them together.
+#[derive(Debug, Clone)]
+pub(super) struct Hypothesis<const N: usize> {
+    pub contacts: [Contact; N],
+    /// Of the measurements that count now.
+    pub now: Sums<N>,
+    pub logs: Logs,
+    pub marginal: Marginal<N>,
+}
+
+impl<const N: usize> Hypothesis<N> {
+    /// The force of a contact on its link at the newest pose, link frame (N).
+    pub fn force(&self, contact: usize) -> Vector3<f64> {
+        let Contact { claim, touch, .. } = &self.contacts[contact];
+        let Forces { known, first, spring } = touch.forces;
+        let force = known + first * self.marginal.force[contact] + spring * self.marginal.stiffness[contact];
         // An obstacle that is left does not pull.
-        if self.claim.model == ContactModel::Obstacle && force.dot(&self.touch.normal) > 0.0 {
+        if claim.model == ContactModel::Obstacle && force.dot(&touch.normal) > 0.0 {
             Vector3::zeros()
         } else {
             force
         }
     }
+
+    /// The contacts in another order.
+    pub fn reorder(&mut self, order: &[usize; N]) {
+        self.contacts = order.map(|k| self.contacts[k]);
+        self.marginal.force = order.map(|k| self.marginal.force[k]);
+        self.marginal.stiffness = order.map(|k| self.marginal.stiffness[k]);
+        self.now.reorder(order);
+    }
 }
 
-impl ContactSamples for Vec<Hypothesis> {
+/// One of the contacts of all hypotheses.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct One<'a, const N: usize> {
+    pub all: &'a [Hypothesis<N>],
+    pub contact: usize,
+}
+
+impl<const N: usize> ContactSamples for One<'_, N> {
     #[inline]
     fn sample(&self, k: usize) -> ContactSample {
-        let hypothesis = &self[k];
+        let hypothesis = &self.all[k];
+        let Contact { claim, touch, .. } = &hypothesis.contacts[self.contact];
         ContactSample {
-            link: hypothesis.claim.link as usize,
-            point: hypothesis.touch.point,
-            normal: hypothesis.touch.normal,
-            force: hypothesis.force(),
-            stiffness: match hypothesis.claim.model {
+            link: claim.link as usize,
+            point: touch.point,
+            normal: touch.normal,
+            force: hypothesis.force(self.contact),
+            stiffness: match claim.model {
                 ContactModel::Person => 0.0,
-                _ => hypothesis.marginal.stiffness,
+                _ => hypothesis.marginal.stiffness[self.contact],
             },
         }
     }

@@ -1,5 +1,6 @@
-//! The torques that were measured of one contact, at poses that differ.
+//! The torques that were measured of the contacts, at poses that differ.
 
+use super::between::Between;
 use crate::particle::{Instant, NEW_POSE};
 use crate::spatial::Pose;
 use crate::torque::{Frame, Target};
@@ -12,6 +13,8 @@ const CLEAR: f64 = 3.0;
 pub(super) struct Measurement {
     /// One a link of the robot.
     pub links: Vec<Frame>,
+    /// Where there may be several contacts.
+    pub between: Option<Between>,
     pub target: Target,
     /// Torques that are clearly above their noise: the others tell nothing of how much greater it is in proportion to the torque.
     pub rows: f64,
@@ -39,11 +42,13 @@ pub(super) struct Measurements {
 }
 
 impl Measurements {
-    /// As many poses at most.
-    pub fn new(instant: &Instant, most: usize) -> Self {
+    /// As many poses at most, of one contact or several.
+    pub fn new(instant: &Instant, most: usize, several: bool) -> Self {
         let links = instant.frames.links.clone();
         let first = links.iter().map(|frame| frame.pose).collect();
-        let one = Measurement { links, target: instant.target.clone(), rows: 0.0, before: 0.0, now: 0.0 };
+        let between = several.then(|| Between::new(links.len(), &instant.frames.wanted));
+        let one =
+            Measurement { links, between, target: instant.target.clone(), rows: 0.0, before: 0.0, now: 0.0 };
         // One more than count: for that which no longer does.
         Measurements {
             all: vec![one; most + 1],
@@ -120,6 +125,9 @@ impl Measurements {
             measurement.links[link].copy(&instant.frames.links[link]);
         }
         measurement.target.copy(&instant.target, &instant.frames.wanted);
+        if let Some(between) = &mut measurement.between {
+            between.set(&measurement.links, &instant.frames.wanted);
+        }
         let clear = instant
             .torque
             .iter()

@@ -6,6 +6,7 @@ use crate::robot::Robot;
 use crate::torque::{ForceModel, NoiseModel};
 
 use super::hypothesis::ContactModel;
+use super::sums::MOST_CONTACTS;
 
 /// Measurements that a window holds at least and at most: one pose tells little, and each costs time and memory.
 const LEAST_WINDOW: usize = 2;
@@ -33,6 +34,8 @@ pub struct SamplerOptions {
     pub particles: usize,
     /// What the contact may be with.
     pub models: Vec<ContactModel>,
+    /// Contacts that there may be at the same time, from 1 to 4. Of more than one, all are with obstacles.
+    pub max_contacts: usize,
     /// Poses whose torques are kept, from 2 to 1000.
     pub window: usize,
     /// Time after which a measurement counts for a part in e of what it did when it was new (s): obstacles that creep are followed.
@@ -77,6 +80,7 @@ impl SamplerOptions {
         SamplerOptions {
             particles: filter.particles,
             models: vec![ContactModel::Obstacle],
+            max_contacts: 1,
             window: 40,
             forgetting_time: None,
             force_model: filter.force_model,
@@ -96,9 +100,11 @@ impl SamplerOptions {
 
     /// What a filter is told in the same words; it is checked with the links that are looked on.
     pub(super) fn check(&self, robot: &Robot) -> Result<(FilterOptions, Vec<usize>)> {
-        for (name, value, range) in
-            [("window", self.window, LEAST_WINDOW..=MOST_WINDOW), ("moves", self.moves, 1..=MOST_MOVES)]
-        {
+        for (name, value, range) in [
+            ("window", self.window, LEAST_WINDOW..=MOST_WINDOW),
+            ("moves", self.moves, 1..=MOST_MOVES),
+            ("max_contacts", self.max_contacts, 1..=MOST_CONTACTS),
+        ] {
             whole(name, value, range)?;
         }
         if let Some(time) = self.forgetting_time.filter(|time| !(*time > 0.0 && time.is_finite())) {
@@ -106,6 +112,12 @@ impl SamplerOptions {
         }
         if self.models.is_empty() {
             return Err(Error::input("models", "must name at least one model of a contact"));
+        }
+        if self.max_contacts > 1 && self.models.iter().any(|model| *model != ContactModel::Obstacle) {
+            return Err(Error::input(
+                "models",
+                "must be 'obstacle' alone where max_contacts is greater than 1",
+            ));
         }
         let filter = FilterOptions {
             particles: self.particles,

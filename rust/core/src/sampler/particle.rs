@@ -16,7 +16,7 @@ use crate::robot::LinkIndex;
 /// let options = SamplerOptions { particles: 500, ..SamplerOptions::default() };
 /// let mut sampler = StaticObstacleSampler::new(Arc::new(Robot::example_arm()), &options)?;
 /// sampler.update(&[0.4; 7], &[1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0], None)?;
-/// let particle = sampler.particle(0).expect("the first of 500");
+/// let particle = sampler.particle(0, 0).expect("the first of 500");
 /// assert!((particle.normal.norm() - 1.0).abs() < 1e-9 && particle.weight >= 0.0);
 /// # Ok::<(), contactsense::Error>(())
 /// ```

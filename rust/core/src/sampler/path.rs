@@ -2,15 +2,15 @@
 
 use nalgebra::Vector3;
 
-use super::hypothesis::{Claim, ContactModel, Forces, Hypothesis, Touch};
+use super::hypothesis::{Claim, Contact, ContactModel, Hypothesis, Touch};
 use super::measurements::{Measurement, Measurements};
 use super::sums::{Marginal, Prior, Sums};
 use crate::math::random::Stream;
-use crate::particle::{signed, tangent};
+use crate::particle::tangent;
 use crate::posterior::tempering::{Logs, Path, Wanted};
 use crate::robot::Robot;
 use crate::surface::{Surface, SurfacePoint};
-use crate::torque::{directions, ForceModel, Frame, LinkTarget, NormalFit};
+use crate::torque::ForceModel;
 
 /// Share of moves by a difference of two other hypotheses on the link, which has the scale and the direction of what is not known yet
 /// (differential evolution; ter Braak 2006); and of those the share that take the whole of it, the others take a part.
@@ -27,46 +27,57 @@ const ALONE: [f64; 2] = [0.4, 0.6];
 /// Share of moves that take another model.
 const MODEL_MOVES: f64 = 0.2;
 
-/// The model of a contact.
-pub(super) struct ContactPath<'a> {
+/// Share of moves that place a contact anywhere, of two contacts or more: which links are touched is not known from one of them.
+const ANYWHERE: f64 = 0.2;
+
+/// The model of so many contacts.
+pub(super) struct ContactPath<'a, const N: usize> {
     pub robot: &'a Robot,
     pub measurements: &'a Measurements,
     pub models: &'a [ContactModel],
+    /// Places of the surface, by area.
+    pub places: &'a [(u32, SurfacePoint)],
     pub prior: Prior,
     pub force_model: ForceModel,
     pub log_radius: [f64; 2],
 }
 
-impl ContactPath<'_> {
-    fn surface(&self, link: u32) -> Option<&Surface> {
+impl<const N: usize> ContactPath<'_, N> {
+    pub(super) fn surface(&self, link: u32) -> Option<&Surface> {
         self.robot.links()[link as usize].surface.as_deref()
     }
 
-    /// A hypothesis of all measurements; none where its link has no surface or it is surely not wanted.
-    pub fn make(&self, claim: Claim, wanted: Option<Wanted>) -> Option<Hypothesis> {
-        let surface = self.surface(claim.link)?;
+    /// A contact by a model at one of the places, with a radius at a share of its range.
+    pub fn claim(&self, model: ContactModel, place: usize, of_radius: f64) -> Claim {
+        let (link, place) = self.places[place.min(self.places.len() - 1)];
+        let [least, greatest] = self.log_radius;
+        Claim { model, link, place, log_radius: least + (greatest - least) * of_radius }
+    }
+
+    /// Where the claimed contact was first.
+    fn contact(&self, claim: Claim) -> Contact {
         let place = &claim.place;
         let away = match claim.model {
             ContactModel::Obstacle => place.normal * claim.log_radius.exp(),
             ContactModel::Person | ContactModel::Both => Vector3::zeros(),
         };
         let anchor = self.measurements.first[claim.link as usize].transform_point(&(place.point + away));
-        let mut touch = Touch {
-            point: place.point,
-            normal: place.normal,
-            triangle: place.triangle,
-            forces: Forces::default(),
-            sums: Sums::default(),
-        };
-        let (mut before, mut now) = (Sums::default(), Sums::default());
-        let mut newest = touch;
+        Contact { claim, anchor, touch: Touch::of(&claim) }
+    }
+
+    /// A hypothesis of all measurements; none where it is surely not wanted.
+    pub fn make(&self, claims: [Claim; N], wanted: Option<Wanted>) -> Option<Hypothesis<N>> {
+        let mut contacts = claims.map(|claim| self.contact(claim));
+        let (mut before, mut now) = (Sums::NONE, Sums::NONE);
+        let mut newest = contacts.map(|contact| contact.touch);
         for (number, measurement) in self.measurements.scattered().enumerate() {
-            touch = self.touch(surface, &claim, &anchor, measurement, touch.triangle);
+            let (touches, sums) = self.touch(&contacts, measurement);
+            contacts.iter_mut().zip(touches).for_each(|(contact, touch)| contact.touch = touch);
             let Measurement { before: share_before, now: share_now, .. } = *measurement;
-            before.add(share_before, &touch.sums);
-            now.add(share_now, &touch.sums);
+            before.add(share_before, &sums);
+            now.add(share_now, &sums);
             if number == 0 {
-                newest = touch;
+                newest = touches;
             }
             // Not each time: to look costs a part of what it saves.
             let look = (number + 1).is_power_of_two();
@@ -74,35 +85,36 @@ impl ContactPath<'_> {
                 return None;
             }
         }
+        contacts.iter_mut().zip(newest).for_each(|(contact, touch)| contact.touch = touch);
         let start = self.prior.integrate(&before).log;
         let (marginal, logs) = self.marginal(&now, start);
-        Some(Hypothesis { claim, anchor, now, touch: newest, logs, marginal })
+        Some(Hypothesis { contacts, now, logs, marginal })
     }
 
     /// What the densities can be at most, whatever other measurements say.
-    fn most(&self, before: &Sums, now: &Sums) -> Logs {
+    fn most(&self, before: &Sums<N>, now: &Sums<N>) -> Logs {
         let [rows_before, rows_now] = self.measurements.rows;
         let (start, end) = (self.prior.most(before, rows_before), self.prior.most(now, rows_now));
         Logs { start, added: end - start }
     }
 
     /// Takes the newest measurement into a hypothesis that knows those before it.
-    pub fn follow(&self, hypothesis: &mut Hypothesis) {
-        let Hypothesis { claim, anchor, .. } = hypothesis;
-        let Some(surface) = self.surface(claim.link) else { return };
+    pub fn follow(&self, hypothesis: &mut Hypothesis<N>) {
         if let Some(dropped) = self.measurements.dropped() {
-            let touch = self.touch(surface, claim, anchor, dropped, claim.place.triangle);
-            hypothesis.now.add(-dropped.before, &touch.sums);
+            let first =
+                hypothesis.contacts.map(|contact| Contact { touch: Touch::of(&contact.claim), ..contact });
+            let (_, sums) = self.touch(&first, dropped);
+            hypothesis.now.add(-dropped.before, &sums);
         }
-        let newest = self.measurements.newest();
-        hypothesis.touch = self.touch(surface, claim, anchor, newest, hypothesis.touch.triangle);
+        let (touches, sums) = self.touch(&hypothesis.contacts, self.measurements.newest());
+        hypothesis.contacts.iter_mut().zip(touches).for_each(|(contact, touch)| contact.touch = touch);
         hypothesis.now.scale(self.measurements.kept);
-        hypothesis.now.add(1.0, &hypothesis.touch.sums);
+        hypothesis.now.add(1.0, &sums);
         (hypothesis.marginal, hypothesis.logs) = self.marginal(&hypothesis.now, hypothesis.marginal.log);
     }
 
     /// `start`: the logarithm of the likelihood before the newest measurement.
-    fn marginal(&self, now: &Sums, start: f64) -> (Marginal, Logs) {
+    fn marginal(&self, now: &Sums<N>, start: f64) -> (Marginal<N>, Logs) {
         let marginal = self.prior.integrate(now);
         let end = marginal.log;
         // From a density of zero no way leads back.
@@ -110,104 +122,9 @@ impl ContactPath<'_> {
         (marginal, Logs { start, added })
     }
 
-    fn touch(
-        &self,
-        surface: &Surface,
-        claim: &Claim,
-        anchor: &Vector3<f64>,
-        measurement: &Measurement,
-        triangle: Option<u32>,
-    ) -> Touch {
-        let mut touch = self.contact(surface, claim, anchor, measurement, triangle);
-        touch.sums.rows = measurement.rows;
-        touch
-    }
-
-    fn contact(
-        &self,
-        surface: &Surface,
-        claim: &Claim,
-        anchor: &Vector3<f64>,
-        measurement: &Measurement,
-        triangle: Option<u32>,
-    ) -> Touch {
-        let link = claim.link as usize;
-        let (frame, target) = (&measurement.links[link], measurement.target.on(link));
-        let squared = measurement.target.squared;
-        let place = &claim.place;
-        let at_first = |forces, sums| Touch {
-            point: place.point,
-            normal: place.normal,
-            triangle: place.triangle,
-            forces,
-            sums,
-        };
-        match claim.model {
-            ContactModel::Obstacle => {
-                let local = frame.pose.inverse_transform_point(anchor);
-                let near = surface.closest_point_near(&local, triangle);
-                let (distance, normal) = signed(&near, &local);
-                let deeper = claim.log_radius.exp() - distance;
-                let fit = self.fit(frame, target, squared, &near.point, &normal);
-                let forces = Forces { first: -normal, spring: -normal * deeper, ..Forces::default() };
-                let sums = Sums::along(&fit, deeper);
-                Touch { point: near.point, normal, triangle: near.triangle, forces, sums }
-            }
-            ContactModel::Person => {
-                let fit = self.fit(frame, target, squared, &place.point, &place.normal);
-                let (sums, force) = Sums::free(&fit, &self.prior);
-                at_first(Forces { known: -place.normal * force, ..Forces::default() }, sums)
-            }
-            ContactModel::Both => {
-                let first = &self.measurements.first[link];
-                let inward = -(frame.pose.rotation.transpose() * (first.rotation * place.normal));
-                let stretch = frame.pose.inverse_transform_point(anchor) - place.point;
-                let (gram, products) =
-                    frame.responses(&place.point, &[inward, stretch, Vector3::zeros()], target);
-                let gain = [gram[(0, 0)], gram[(0, 1)], gram[(1, 1)]];
-                let sums = Sums::of_two(gain, [products[0], products[1]], squared);
-                at_first(Forces { first: inward, spring: stretch, ..Forces::default() }, sums)
-            }
-        }
-    }
-
-    fn fit(
-        &self,
-        frame: &Frame,
-        target: &LinkTarget,
-        squared: f64,
-        point: &Vector3<f64>,
-        normal: &Vector3<f64>,
-    ) -> NormalFit {
-        let (gain, product) = frame.response(point, normal, target);
-        let bare = NormalFit { gain, product, target: squared, penalty: 0.0 };
-        match self.force_model.deviation_across(self.prior.force_of(&bare)) {
-            Some(deviation) => {
-                let (gram, products) = frame.responses(point, &directions(normal), target);
-                NormalFit::without_friction(&gram, &products, squared, deviation * deviation)
-            }
-            None => bare,
-        }
-    }
-}
-
-impl Path for ContactPath<'_> {
-    type Sample = Hypothesis;
-
-    fn logs(&self, sample: &Hypothesis) -> Logs {
-        sample.logs
-    }
-
-    fn propose(
-        &self,
-        sample: &Hypothesis,
-        others: &[Hypothesis],
-        wanted: Wanted,
-        random: &Stream,
-        first: u64,
-    ) -> Option<Hypothesis> {
+    /// Another claim near one, as likely to be proposed from there as the other way round.
+    fn near(&self, mut claim: Claim, others: &[Hypothesis<N>], random: &Stream, first: u64) -> Option<Claim> {
         let draw = |k: u64| random.uniform(first + k);
-        let mut claim = sample.claim;
         if self.models.len() > 1 && draw(0) < MODEL_MOVES {
             claim.model = self.models[(draw(1) * self.models.len() as f64) as usize];
         }
@@ -239,14 +156,46 @@ impl Path for ContactPath<'_> {
             }
             claim.place = SurfacePoint { point: near.point, normal: near.normal, triangle: near.triangle };
         }
-        self.make(claim, Some(wanted))
+        Some(claim)
     }
 }
 
-/// Two of the others on a link, by chance.
-fn pair(others: &[Hypothesis], link: u32, draw: impl Fn(u64) -> f64) -> Option<(&Claim, &Claim)> {
+impl<const N: usize> Path for ContactPath<'_, N> {
+    type Sample = Hypothesis<N>;
+
+    fn logs(&self, sample: &Hypothesis<N>) -> Logs {
+        sample.logs
+    }
+
+    fn propose(
+        &self,
+        sample: &Hypothesis<N>,
+        others: &[Hypothesis<N>],
+        wanted: Wanted,
+        random: &Stream,
+        first: u64,
+    ) -> Option<Hypothesis<N>> {
+        let draw = |k: u64| random.uniform(first + k);
+        let mut claims = sample.contacts.map(|contact| contact.claim);
+        let contact = (draw(30) * N as f64) as usize;
+        claims[contact] = if N > 1 && draw(31) < ANYWHERE {
+            self.claim(claims[contact].model, (draw(32) * self.places.len() as f64) as usize, draw(33))
+        } else {
+            self.near(claims[contact], others, random, first)?
+        };
+        self.make(claims, Some(wanted))
+    }
+}
+
+/// Two contacts of others on a link, by chance.
+fn pair<const N: usize>(
+    others: &[Hypothesis<N>],
+    link: u32,
+    draw: impl Fn(u64) -> f64,
+) -> Option<(&Claim, &Claim)> {
     let mut found = (0..PAIR_DRAWS)
-        .map(|k| &others[(draw(k) * others.len() as f64) as usize].claim)
+        .map(|k| (draw(k) * (others.len() * N) as f64) as usize)
+        .map(|k| &others[k / N].contacts[k % N].claim)
         .filter(|claim| claim.link == link);
     Some((found.next()?, found.next()?))
 }

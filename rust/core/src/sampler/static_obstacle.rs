@@ -3,20 +3,20 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
 
-use super::hypothesis::{Claim, ContactModel, Hypothesis};
+use super::hypothesis::ContactModel;
 use super::measurements::Measurements;
 use super::options::SamplerOptions;
 use super::particle::Particle;
-use super::path::ContactPath;
-use super::sums::Prior;
+use super::population::{population, Population, Scene};
+use super::sums::MOST_CONTACTS;
 use crate::detection::Gate;
 use crate::error::{Error, Result};
 use crate::math::chi_square::upper_limit;
 use crate::math::random::Stream;
 use crate::particle::{exposed_places, Event, FilterEstimate, FilterOptions, Instant};
 use crate::posterior::parallel::{Course, Pool};
-use crate::posterior::tempering::{Samples, Tempering, Travelled};
-use crate::posterior::{Clusters, ContactSamples, MOST_MODES};
+use crate::posterior::tempering::Tempering;
+use crate::posterior::{Clusters, MOST_MODES};
 use crate::robot::{LinkIndex, Robot};
 use crate::surface::SurfacePoint;
 
@@ -33,12 +33,17 @@ const GRANTED: f64 = 3.0;
 const FITTED: usize = 5;
 /// Poses that tell an obstacle that stays from what is none.
 const LEAST_POSES: usize = 4;
+/// A number of contacts that is less probable is not sure.
+const SURE_NUMBER: f64 = 0.8;
 
-/// Finds one contact with an obstacle that stays, anywhere on a robot, from all joint torques that were measured of it (algorithm C3).
+/// Finds contacts with obstacles that stay, anywhere on a robot, from all joint torques that were measured of them (algorithm C3).
 ///
 /// Where a particle filter forgets what earlier motions taught, each hypothesis here has an obstacle that stays for good and
 /// predicts every measurement of the window. Hypotheses are taken from one measurement to the next by tempered sequential Monte
 /// Carlo (Del Moral, Doucet and Jasra 2006).
+///
+/// Where there may be several contacts, there are as many particles of one contact, of two and so on, each of which explains the
+/// torques together; their evidence tells how many contacts there are.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -70,10 +75,13 @@ pub struct StaticObstacleSampler {
     instant: Instant,
     measurements: Measurements,
     places: Vec<(u32, SurfacePoint)>,
-    samples: Samples<Hypothesis>,
+    /// Of one contact, two and so on.
+    populations: Vec<Box<dyn Population>>,
+    /// Probability of each, and the most probable.
+    numbers: Vec<f64>,
+    likely: usize,
     clusters: Clusters,
     found: FilterEstimate,
-    evidence: f64,
 }
 
 impl StaticObstacleSampler {
@@ -86,16 +94,24 @@ impl StaticObstacleSampler {
         let noise = filter.torque_noise(&robot)?;
         let threshold = filter.threshold(&robot, &noise)?;
         let (places, _) = exposed_places(&robot, &wanted, &filter)?;
-        let found = FilterEstimate::new(wanted.len(), MOST_MODES);
+        let most = options.max_contacts;
+        let found = FilterEstimate::of_several(wanted.len(), MOST_MODES, most);
         let instant = Instant::new(&robot, noise, wanted);
-        let measurements = Measurements::new(&instant, options.window);
-        let (link, place) = places[0];
-        let claim = Claim { model: options.models[0], link, place, log_radius: filter.radius_range[0].ln() };
-        let first = path(&robot, &measurements, &filter, &options.models).make(claim, None);
-        let first =
-            first.ok_or_else(|| Error::input("robot", "has no surface where anything could touch it"))?;
+        let measurements = Measurements::new(&instant, options.window, most > 1);
+        let scene = Scene {
+            robot: &robot,
+            measurements: &measurements,
+            options: &filter,
+            models: &options.models,
+            places: &places,
+        };
+        let populations = (1..=most)
+            .map(|contacts| population(contacts, options.particles, scene))
+            .collect::<Result<_>>()?;
         Ok(StaticObstacleSampler {
-            samples: Samples::new(options.particles, first)?,
+            populations,
+            numbers: vec![0.0; most],
+            likely: 0,
             clusters: Clusters::new(options.particles, robot.links().len())?,
             moves: options.moves,
             window: options.window,
@@ -105,7 +121,6 @@ impl StaticObstacleSampler {
             forgetting_time: options.forgetting_time,
             time: None,
             stop: Arc::default(),
-            evidence: 0.0,
             options: filter,
             instant,
             measurements,
@@ -178,7 +193,12 @@ impl StaticObstacleSampler {
         self.gate.reset();
         self.measurements.clear();
         self.found.clear(Event::None);
-        (self.found.updates, self.evidence, self.time) = (0, 0.0, None);
+        (self.found.updates, self.time, self.likely) = (0, None, 0);
+        self.numbers.fill(0.0);
+        for population in &mut self.populations {
+            let log = population.log_evidence();
+            population.add_log_evidence(-log);
+        }
         self.found.torque.clear();
     }
 
@@ -197,25 +217,39 @@ impl StaticObstacleSampler {
         &self.found
     }
 
-    /// Weights of the particles, which sum to one.
-    pub fn weights(&self) -> &[f64] {
-        &self.samples.weights
+    /// Probability of one contact, two and so on; all zero without a contact.
+    pub fn number_probabilities(&self) -> &[f64] {
+        &self.numbers
     }
 
-    /// A particle at the newest pose: its model, and its contact in the world frame; none where there is none of that number.
-    pub fn particle(&self, k: usize) -> Option<Particle> {
-        let hypothesis = self.samples.all.get(k)?;
-        let link = hypothesis.claim.link as usize;
-        let pose = self.instant.pose(link);
-        let contact = self.samples.all.sample(k);
+    /// Of the most probable number of contacts.
+    fn population(&self) -> &dyn Population {
+        self.populations[self.likely].as_ref()
+    }
+
+    /// Weights of the particles of the most probable number of contacts, which sum to one.
+    pub fn weights(&self) -> &[f64] {
+        self.population().weights()
+    }
+
+    /// How many contacts these have.
+    pub fn contacts(&self) -> usize {
+        self.population().contacts()
+    }
+
+    /// A particle at the newest pose: the model of one of its contacts, and that contact in the world frame; none where there is none
+    /// of these numbers.
+    pub fn particle(&self, k: usize, contact: usize) -> Option<Particle> {
+        let (model, sample) = self.population().sample(k, contact)?;
+        let pose = self.instant.pose(sample.link);
         Some(Particle {
-            model: hypothesis.claim.model,
-            link: LinkIndex::new(link),
-            point: pose.transform_point(&contact.point),
-            normal: pose.rotation * contact.normal,
-            force: pose.rotation * contact.force,
-            stiffness: contact.stiffness,
-            weight: self.samples.weights[k],
+            model,
+            link: LinkIndex::new(sample.link),
+            point: pose.transform_point(&sample.point),
+            normal: pose.rotation * sample.normal,
+            force: pose.rotation * sample.force,
+            stiffness: sample.stiffness,
+            weight: self.weights()[k],
         })
     }
 
@@ -224,26 +258,20 @@ impl StaticObstacleSampler {
         if self.found.estimate.contact.is_none() {
             return 0.0;
         }
-        let own = |hypothesis: &Hypothesis| hypothesis.claim.model == model;
-        self.samples
-            .all
-            .iter()
-            .zip(&self.samples.weights)
-            .filter(|(hypothesis, _)| own(hypothesis))
-            .map(|(_, w)| w)
-            .sum()
+        let population = self.population();
+        let own = |k: &usize| population.sample(*k, 0).is_some_and(|(own, _)| own == model);
+        (0..self.weights().len()).filter(own).map(|k| self.weights()[k]).sum()
     }
 
-    /// Logarithm of how many times as likely all torques of the contact are under one of the models as without a contact.
+    /// Logarithm of how many times as likely all torques of the contacts are under one of the models as without a contact.
     pub fn total_log_evidence(&self) -> f64 {
-        self.evidence
+        self.population().log_evidence()
     }
 
     fn follow(&mut self, event: Event, kept: f64) {
         let started = event == Event::Started;
         if started {
             self.measurements.clear();
-            self.evidence = 0.0;
         }
         self.measurements.take_in(&self.instant, kept);
         let Self {
@@ -251,7 +279,7 @@ impl StaticObstacleSampler {
             options,
             models,
             measurements,
-            samples,
+            populations,
             moves,
             window,
             stop,
@@ -261,7 +289,7 @@ impl StaticObstacleSampler {
             ..
         } = self;
         let random = Stream::new(options.seed).fork(found.updates);
-        let path = path(robot, measurements, options, models);
+        let scene = Scene { robot, measurements, options, models, places };
         let threads = options.threads;
         // The less poses there are, the less work is a move.
         let most_moves = *moves * *window / measurements.len().max(1);
@@ -270,72 +298,62 @@ impl StaticObstacleSampler {
             moves: (most_moves / LEAST_STEPS).clamp(1, MOST_MOVES),
             most_moves,
         };
-        if started {
-            samples.restart();
-        }
-        let count = samples.all.len();
-        let mut travelled = Travelled::default();
-        pool.install(|| {
-            let work = |start: usize, hypotheses: &mut [Hypothesis]| {
-                for (k, hypothesis) in hypotheses.iter_mut().enumerate() {
-                    if !started {
-                        path.follow(hypothesis);
-                        continue;
-                    }
-                    let number = start + k;
-                    let (link, place) = places[number * places.len() / count];
-                    let [least, greatest] = path.log_radius;
-                    let log_radius = least + (greatest - least) * random.uniform(number as u64);
-                    let model = path.models[number % path.models.len()];
-                    let made = path.make(Claim { model, link, place, log_radius }, None);
-                    if let Some(made) = made {
-                        *hypothesis = made;
-                    }
-                }
-            };
-            // Each measurement is taken into all particles, whatever is to end.
-            let never = AtomicBool::new(false);
-            Course { threads, stop: &never }.for_each(&mut samples.all[..], 0, &work);
-            travelled = samples.travel(&path, tempering, random.fork(1), Course { threads, stop });
-        });
-        let without: f64 = self
-            .measurements
+        let without: f64 = measurements
             .scattered()
             .map(|measurement| 0.5 * (measurement.now - measurement.before) * measurement.target.squared)
             .sum();
-        self.evidence += travelled.log_evidence + without;
-        self.say(event, travelled.effective, travelled.log_evidence + without);
+        let (mut effective, mut log_evidence) = ([0.0; MOST_CONTACTS], [0.0; MOST_CONTACTS]);
+        pool.install(|| {
+            for (k, population) in populations.iter_mut().enumerate() {
+                let course = Course { threads, stop };
+                let travelled = population.update(scene, started, tempering, random.fork(k as u64), course);
+                (effective[k], log_evidence[k]) = (travelled.effective, travelled.log_evidence + without);
+                population.add_log_evidence(log_evidence[k]);
+            }
+        });
+        self.choose();
+        self.say(event, effective[self.likely], log_evidence[self.likely]);
+    }
+
+    /// How probable each number of contacts is, all being as probable beforehand.
+    fn choose(&mut self) {
+        let logs = || self.populations.iter().map(|population| population.log_evidence());
+        let greatest = logs().fold(f64::NEG_INFINITY, f64::max);
+        for (number, log) in self.numbers.iter_mut().zip(logs()) {
+            *number = if greatest > f64::NEG_INFINITY { (log - greatest).exp() } else { 1.0 };
+        }
+        let sum: f64 = self.numbers.iter().sum();
+        self.numbers.iter_mut().for_each(|number| *number /= sum);
+        // The least number of those that are as probable.
+        self.likely = (0..self.numbers.len())
+            .rev()
+            .max_by(|a, b| self.numbers[*a].total_cmp(&self.numbers[*b]))
+            .unwrap_or(0);
     }
 
     fn say(&mut self, event: Event, effective: f64, log_evidence: f64) {
-        let Self { robot, instant, samples, clusters, found, measurements, .. } = self;
-        clusters.find(robot, &instant.frames, &samples.all, &samples.weights);
+        let Self { robot, instant, populations, numbers, likely, clusters, found, measurements, .. } = self;
+        let population = &populations[*likely];
         found.clear(event);
-        found.estimate.set(clusters, &instant.frames, 0.0);
+        for contact in 0..population.contacts() {
+            population.find(contact, clusters, robot, &instant.frames);
+            let estimate = match contact {
+                0 => &mut found.estimate,
+                _ => &mut found.others[contact - 1],
+            };
+            estimate.set(clusters, &instant.frames, 0.0);
+        }
         (found.effective_samples, found.log_evidence) = (effective, log_evidence);
-        let misfit =
-            samples.all.iter().map(|hypothesis| hypothesis.marginal.misfit).fold(f64::INFINITY, f64::min);
+        let misfit = population.misfit();
         let poses = measurements.len();
         let rows = poses * instant.torque.len();
         found.residual = (misfit / rows as f64).sqrt();
-        found.explained = misfit <= GRANTED * GRANTED * upper_limit(rows.saturating_sub(FITTED));
-        found.estimate.ambiguous |= !found.explained || poses < LEAST_POSES;
-    }
-}
-
-fn path<'a>(
-    robot: &'a Robot,
-    measurements: &'a Measurements,
-    options: &FilterOptions,
-    models: &'a [ContactModel],
-) -> ContactPath<'a> {
-    ContactPath {
-        robot,
-        measurements,
-        models,
-        prior: Prior { force: options.force_range, stiffness: options.stiffness_range },
-        force_model: options.force_model,
-        log_radius: options.radius_range.map(f64::ln),
+        let fitted = FITTED * population.contacts();
+        found.explained = misfit <= GRANTED * GRANTED * upper_limit(rows.saturating_sub(fitted));
+        let unsure = !found.explained || poses < LEAST_POSES || numbers[*likely] < SURE_NUMBER;
+        for estimate in found.others.iter_mut().chain([&mut found.estimate]) {
+            estimate.ambiguous |= unsure && estimate.contact.is_some();
+        }
     }
 }
 

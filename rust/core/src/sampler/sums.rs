@@ -1,20 +1,29 @@
-//! What measurements say of the force at the first touch and the stiffness of a contact, and of the contact with both integrated out.
+//! What measurements say of the forces at the first touch and the stiffnesses of contacts, and of the contacts with these integrated out.
 
 use std::f64::consts::TAU;
 
-use crate::torque::NormalFit;
+use nalgebra::{Matrix2, Vector2};
+
+use crate::torque::{NormalFit, SeveralPushes};
 
 /// Force and stiffness are not told apart where the determinant of their precision is this share of the product of its diagonal.
 const SINGULAR: f64 = 1e-12;
+/// Contacts at most, and so twice as many numbers.
+pub(crate) const MOST_CONTACTS: usize = 4;
+const MOST_NUMBERS: usize = 2 * MOST_CONTACTS;
+/// Sweeps over the contacts where one of the numbers is at an end of its range, at most, and the change of a sweep that ends them,
+/// relative to the numbers.
+const SWEEPS: usize = 40;
+const SETTLED: f64 = 1e-5;
 
-/// Sums over measurements, each with a force `F a + K b`: `F` the force at the first touch, `K` the stiffness, `a` a direction and `b`
-/// how far the spring of the contact is pressed in more than then (m).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Sums {
-    /// Inner products of the torques of `a` and `b`, each joint over its noise: `aa`, `ab`, `bb`.
-    gain: [f64; 3],
+/// Sums over measurements, each with a force `F a + K b` of each contact: `F` the force at the first touch, `K` the stiffness, `a` a
+/// direction and `b` how far the spring of the contact is pressed in more than then (m).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Sums<const N: usize> {
+    /// Inner products of the torques of `a` and `b` of one contact and those of another, each joint over its noise. Symmetric.
+    gain: [[Matrix2<f64>; N]; N],
     /// Theirs with the measured torques.
-    product: [f64; 2],
+    product: [Vector2<f64>; N],
     /// Of the squared torques.
     target: f64,
     /// What the freedom of forces that are integrated out already costs, twice as a log-likelihood.
@@ -23,37 +32,55 @@ pub(super) struct Sums {
     pub rows: f64,
 }
 
-impl Sums {
-    /// Of one measurement with a force along the normal, which is `deeper` than at the first touch (m).
-    pub fn along(fit: &NormalFit, deeper: f64) -> Self {
-        Sums {
-            gain: [fit.gain, fit.gain * deeper, fit.gain * deeper * deeper],
-            product: [fit.product, fit.product * deeper],
-            target: fit.target,
-            cost: 2.0 * fit.penalty,
-            rows: 0.0,
-        }
+impl<const N: usize> Sums<N> {
+    /// Of no measurement.
+    pub const NONE: Self = Sums {
+        gain: [[Matrix2::new(0.0, 0.0, 0.0, 0.0); N]; N],
+        product: [Vector2::new(0.0, 0.0); N],
+        target: 0.0,
+        cost: 0.0,
+        rows: 0.0,
+    };
+
+    /// Of one measurement of a single contact, the first: from the Gram matrix of the torques of `a` and `b`, the products with the
+    /// measured ones, and their squared norm.
+    pub fn of_two(gain: Matrix2<f64>, product: Vector2<f64>, target: f64) -> Self {
+        let mut sums = Sums { target, ..Sums::NONE };
+        (sums.gain[0][0], sums.product[0]) = (gain, product);
+        sums
     }
 
-    /// Of one measurement, from the Gram matrix of the torques of `a` and `b`, the products with the measured ones, and their
-    /// squared norm.
-    pub fn of_two(gain: [f64; 3], product: [f64; 2], target: f64) -> Self {
-        Sums { gain, product, target, cost: 0.0, rows: 0.0 }
-    }
-
-    /// Of one measurement with a force of its own along the normal, which is integrated out; and the likeliest one (N).
+    /// Of one measurement of a single contact with a force of its own along the normal, which is integrated out; and the likeliest
+    /// one (N).
     pub fn free(fit: &NormalFit, prior: &Prior) -> (Self, f64) {
         let force = prior.force_of(fit);
         let target = (fit.target + force * (force * fit.gain - 2.0 * fit.product)).max(0.0);
         let width = width(force, prior.force);
         let cost = 2.0 * fit.penalty + (1.0 + fit.gain * width * width / TAU).ln();
-        (Sums { target, cost, rows: 0.0, ..Sums::default() }, force)
+        (Sums { target, cost, ..Sums::NONE }, force)
+    }
+
+    /// Of one measurement with forces along the normals, each `deeper` than at the first touch (m).
+    pub fn along(pushes: &SeveralPushes<N>, deeper: &[f64; N]) -> Self {
+        let mut sums = Sums { target: pushes.target, cost: 2.0 * pushes.penalty, ..Sums::NONE };
+        for i in 0..N {
+            sums.product[i] = Vector2::new(1.0, deeper[i]) * pushes.product[i];
+            for j in 0..N {
+                let (own, other) = (deeper[i], deeper[j]);
+                sums.gain[i][j] = Matrix2::new(1.0, other, own, own * other) * pushes.gain[i][j];
+            }
+        }
+        sums
     }
 
     /// Adds so many times another.
-    pub fn add(&mut self, share: f64, other: &Sums) {
-        self.gain.iter_mut().zip(other.gain).for_each(|(sum, x)| *sum += share * x);
-        self.product.iter_mut().zip(other.product).for_each(|(sum, x)| *sum += share * x);
+    pub fn add(&mut self, share: f64, other: &Self) {
+        for i in 0..N {
+            self.product[i] += other.product[i] * share;
+            for j in 0..N {
+                self.gain[i][j] += other.gain[i][j] * share;
+            }
+        }
         self.target += share * other.target;
         self.cost += share * other.cost;
         self.rows += share * other.rows;
@@ -63,6 +90,91 @@ impl Sums {
     pub fn scale(&mut self, share: f64) {
         let all = *self;
         self.add(share - 1.0, &all);
+    }
+
+    /// The contacts in another order.
+    pub fn reorder(&mut self, order: &[usize; N]) {
+        let before = *self;
+        for i in 0..N {
+            self.product[i] = before.product[order[i]];
+            for j in 0..N {
+                self.gain[i][j] = before.gain[order[i]][order[j]];
+            }
+        }
+    }
+
+    /// The squared torques that forces and stiffnesses leave over.
+    fn misfit(&self, numbers: &[Vector2<f64>; N]) -> f64 {
+        let mut misfit = self.target;
+        for i in 0..N {
+            misfit -= 2.0 * self.product[i].dot(&numbers[i]);
+            for j in 0..N {
+                misfit += numbers[i].dot(&(self.gain[i][j] * numbers[j]));
+            }
+        }
+        // Never negative but for rounding.
+        misfit.max(0.0)
+    }
+
+    /// What all contacts but one leave to it.
+    fn left_to(&self, contact: usize, numbers: &[Vector2<f64>; N]) -> Vector2<f64> {
+        let others = (0..N).filter(|j| *j != contact).map(|j| self.gain[contact][j] * numbers[j]);
+        others.fold(self.product[contact], |left, other| left - other)
+    }
+
+    /// Forces and stiffnesses without bounds; none where the measurements do not tell them apart.
+    fn unbounded(&self) -> Option<[Vector2<f64>; N]> {
+        let mut rows = [[0.0; MOST_NUMBERS]; MOST_NUMBERS];
+        let mut right = [0.0; MOST_NUMBERS];
+        for a in 0..2 * N {
+            right[a] = self.product[a / 2][a % 2];
+            for b in 0..2 * N {
+                rows[a][b] = self.gain[a / 2][b / 2][(a % 2, b % 2)];
+            }
+        }
+        let diagonal: [f64; MOST_NUMBERS] = std::array::from_fn(|a| rows[a][a]);
+        for a in 0..2 * N {
+            let pivot = rows[a][a];
+            if pivot.is_nan() || pivot <= SINGULAR * diagonal[a] {
+                return None;
+            }
+            for below in a + 1..2 * N {
+                let share = rows[below][a] / pivot;
+                for b in a..2 * N {
+                    rows[below][b] -= share * rows[a][b];
+                }
+                right[below] -= share * right[a];
+            }
+        }
+        for a in (0..2 * N).rev() {
+            let later: f64 = (a + 1..2 * N).map(|b| rows[a][b] * right[b]).sum();
+            right[a] = (right[a] - later) / rows[a][a];
+        }
+        Some(std::array::from_fn(|i| Vector2::new(right[2 * i], right[2 * i + 1])))
+    }
+
+    /// Of one plus the precision in units of the widths of the prior: at least one but for rounding.
+    fn determinant(&self, widths: &[Vector2<f64>; N], noise: f64) -> f64 {
+        let mut rows = [[0.0; MOST_NUMBERS]; MOST_NUMBERS];
+        for a in 0..2 * N {
+            for b in 0..2 * N {
+                let gain = self.gain[a / 2][b / 2][(a % 2, b % 2)];
+                rows[a][b] = gain * widths[a / 2][a % 2] * widths[b / 2][b % 2] / (TAU * noise);
+            }
+            rows[a][a] += 1.0;
+        }
+        let mut determinant = 1.0;
+        for a in 0..2 * N {
+            let pivot = rows[a][a].max(1.0);
+            determinant *= pivot;
+            for below in a + 1..2 * N {
+                let share = rows[below][a] / pivot;
+                for b in a + 1..2 * N {
+                    rows[below][b] -= share * rows[a][b];
+                }
+            }
+        }
+        determinant
     }
 }
 
@@ -78,37 +190,37 @@ pub(super) struct Prior {
     pub stiffness: [f64; 2],
 }
 
-/// A contact with force and stiffness integrated out.
+/// Contacts with forces and stiffnesses integrated out.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Marginal {
+pub(super) struct Marginal<const N: usize> {
     /// Logarithm of the likelihood, but for a constant of the measurements.
     pub log: f64,
-    /// Likeliest force at the first touch (N) and stiffness (N/m), and the squared torques that they leave over.
-    pub force: f64,
-    pub stiffness: f64,
+    /// Likeliest force at the first touch (N) and stiffness (N/m) of each, and the squared torques that they leave over.
+    pub force: [f64; N],
+    pub stiffness: [f64; N],
     pub misfit: f64,
 }
 
 impl Prior {
-    /// Over both by Laplace's method, with the best force and stiffness within their ranges. The volume is at most that of the
+    /// Over all by Laplace's method, with the best forces and stiffnesses within their ranges. The volume is at most that of the
     /// prior: what the torques do not show costs nothing.
-    pub fn integrate(&self, sums: &Sums) -> Marginal {
+    pub fn integrate<const N: usize>(&self, sums: &Sums<N>) -> Marginal<N> {
         let best = self.best(sums);
-        let (force, stiffness) = (width(best.force, self.force), width(best.stiffness, self.stiffness));
-        let noise = self.noise(best.misfit, sums.rows);
-        let [gain, gain_e, gain_ee] = sums.gain.map(|gain| gain / (TAU * noise));
-        // Of one plus the precision in units of the widths: at least one but for rounding.
-        let determinant = (1.0 + gain * force * force) * (1.0 + gain_ee * stiffness * stiffness)
-            - (gain_e * force * stiffness).powi(2);
+        let misfit = sums.misfit(&best);
+        let widths =
+            best.map(|number| Vector2::new(width(number[0], self.force), width(number[1], self.stiffness)));
+        let determinant = sums.determinant(&widths, self.noise(misfit, sums.rows));
         Marginal {
-            log: -0.5 * (self.weighed(best.misfit, sums.rows) + sums.cost + determinant.max(1.0).ln()),
-            ..best
+            log: -0.5 * (self.weighed(misfit, sums.rows) + sums.cost + determinant.ln()),
+            force: best.map(|number| number[0]),
+            stiffness: best.map(|number| number[1]),
+            misfit,
         }
     }
 
     /// The log-likelihood at most, whatever other measurements say, which have so many rows in all: each can only lessen it.
-    pub fn most(&self, sums: &Sums, rows: f64) -> f64 {
-        -0.5 * (self.weighed(self.best(sums).misfit, rows) + sums.cost)
+    pub fn most<const N: usize>(&self, sums: &Sums<N>, rows: f64) -> f64 {
+        -0.5 * (self.weighed(sums.misfit(&self.best(sums)), rows) + sums.cost)
     }
 
     /// By how much the variance of the torques' noise is greater than stated: what explains the misfit best, and never less than one.
@@ -136,25 +248,49 @@ impl Prior {
         }
     }
 
-    /// The force and stiffness within their ranges that explain the torques best: those that do anywhere, or the best of an edge.
-    fn best(&self, sums: &Sums) -> Marginal {
-        let [gain, gain_e, gain_ee] = sums.gain;
-        let [product, product_e] = sums.product;
+    fn contain(&self, number: &Vector2<f64>) -> bool {
+        let within = |number: f64, [low, high]: [f64; 2]| (low..=high).contains(&number);
+        within(number[0], self.force) && within(number[1], self.stiffness)
+    }
+
+    /// The forces and stiffnesses within their ranges that explain the torques best: those that do anywhere, or by sweeps over the
+    /// contacts.
+    fn best<const N: usize>(&self, sums: &Sums<N>) -> [Vector2<f64>; N] {
+        if N > 1 {
+            let found = sums.unbounded().filter(|found| found.iter().all(|number| self.contain(number)));
+            if let Some(found) = found {
+                return found;
+            }
+        }
+        let mut numbers = [Vector2::zeros(); N];
+        for _ in 0..if N > 1 { SWEEPS } else { 1 } {
+            let mut change: f64 = 0.0;
+            for i in 0..N {
+                let found = self.best_of_one(&sums.gain[i][i], &sums.left_to(i, &numbers));
+                change = change.max((found - numbers[i]).component_div(&found).amax());
+                numbers[i] = found;
+            }
+            if change < SETTLED {
+                break;
+            }
+        }
+        numbers
+    }
+
+    /// The force and stiffness of one contact, within their ranges: those that explain the torques best anywhere, or the best of an
+    /// edge.
+    fn best_of_one(&self, gain: &Matrix2<f64>, product: &Vector2<f64>) -> Vector2<f64> {
         let [least, greatest] = self.force;
         let [softest, stiffest] = self.stiffness;
-        let of = |force: f64, stiffness: f64| {
-            let slope =
-                force * (force * gain - 2.0 * product) + stiffness * (stiffness * gain_ee - 2.0 * product_e);
-            // Never negative but for rounding.
-            let misfit = (sums.target + slope + 2.0 * force * stiffness * gain_e).max(0.0);
-            Marginal { log: f64::NEG_INFINITY, force, stiffness, misfit }
-        };
+        let (gain_e, gain_ee, product_e) = (gain[(0, 1)], gain[(1, 1)], product[1]);
+        let (gain, product) = (gain[(0, 0)], product[0]);
         let determinant = gain * gain_ee - gain_e * gain_e;
         if determinant > SINGULAR * gain * gain_ee {
-            let force = (gain_ee * product - gain_e * product_e) / determinant;
-            let stiffness = (gain * product_e - gain_e * product) / determinant;
-            if (least..=greatest).contains(&force) && (softest..=stiffest).contains(&stiffness) {
-                return of(force, stiffness);
+            let found =
+                Vector2::new(gain_ee * product - gain_e * product_e, gain * product_e - gain_e * product)
+                    / determinant;
+            if self.contain(&found) {
+                return found;
             }
         }
         let ratio = |above: f64, below: f64, [low, high]: [f64; 2]| {
@@ -167,14 +303,26 @@ impl Prior {
         };
         let force_at = |stiffness: f64| ratio(product - stiffness * gain_e, gain, self.force);
         let stiffness_at = |force: f64| ratio(product_e - force * gain_e, gain_ee, self.stiffness);
-        [
-            of(least, stiffness_at(least)),
-            of(greatest, stiffness_at(greatest)),
-            of(force_at(softest), softest),
-            of(force_at(stiffest), stiffest),
-        ]
-        .into_iter()
-        .fold(of(least, softest), |best, other| if other.misfit < best.misfit { other } else { best })
+        let slope = |number: &Vector2<f64>| {
+            let (force, stiffness) = (number[0], number[1]);
+            force * (force * gain - 2.0 * product)
+                + stiffness * (stiffness * gain_ee - 2.0 * product_e)
+                + 2.0 * force * stiffness * gain_e
+        };
+        let edges = [
+            Vector2::new(least, stiffness_at(least)),
+            Vector2::new(greatest, stiffness_at(greatest)),
+            Vector2::new(force_at(softest), softest),
+            Vector2::new(force_at(stiffest), stiffest),
+        ];
+        let better = |best: Vector2<f64>, other: Vector2<f64>| {
+            if slope(&other) < slope(&best) {
+                other
+            } else {
+                best
+            }
+        };
+        edges.into_iter().fold(Vector2::new(least, softest), better)
     }
 }
 
@@ -184,8 +332,8 @@ mod tests {
 
     const PRIOR: Prior = Prior { force: [1.0, 100.0], stiffness: [3e2, 3e4] };
 
-    fn measured(force: f64, stiffness: f64) -> Sums {
-        let mut sums = Sums::default();
+    fn measured(force: f64, stiffness: f64) -> Sums<1> {
+        let mut sums = Sums::NONE;
         for k in 0..12 {
             let (deeper, gain) = (2e-3 * (0.9 * f64::from(k)).sin(), 1.0 + 0.1 * f64::from(k));
             let torque = force + stiffness * deeper;
@@ -195,7 +343,7 @@ mod tests {
                 target: gain * torque * torque + 2.0,
                 penalty: 0.0,
             };
-            sums.add(1.0, &Sums::along(&fit, deeper));
+            sums.add(1.0, &Sums::along(&SeveralPushes::of_one(&fit), &[deeper]));
         }
         sums
     }
@@ -211,15 +359,15 @@ mod tests {
                 |[low, high]: [f64; 2], k: usize| low * (high / low).powf((k as f64 + 0.5) / steps as f64);
             for (a, b) in (0..steps).flat_map(|a| (0..steps).map(move |b| (a, b))) {
                 let (f, k) = (at(PRIOR.force, a), at(PRIOR.stiffness, b));
-                let misfit = sums.target - 2.0 * (f * sums.product[0] + k * sums.product[1])
-                    + f * f * sums.gain[0]
-                    + 2.0 * f * k * sums.gain[1]
-                    + k * k * sums.gain[2];
+                let misfit = sums.target - 2.0 * (f * sums.product[0][0] + k * sums.product[0][1])
+                    + f * f * sums.gain[0][0][(0, 0)]
+                    + 2.0 * f * k * sums.gain[0][0][(0, 1)]
+                    + k * k * sums.gain[0][0][(1, 1)];
                 total += (-0.5 * misfit).exp() / (steps * steps) as f64;
             }
             assert!((found.log - total.ln()).abs() < 0.5, "{found:?} {}", total.ln());
-            assert!((found.force / force - 1.0).abs() < 0.05, "{found:?}");
-            assert!((found.stiffness / stiffness).ln().abs() < 0.3, "{found:?}");
+            assert!((found.force[0] / force - 1.0).abs() < 0.05, "{found:?}");
+            assert!((found.stiffness[0] / stiffness).ln().abs() < 0.3, "{found:?}");
         }
     }
 
@@ -228,10 +376,84 @@ mod tests {
         let fit = NormalFit { gain: 3.0, product: 2.0, target: 7.0, penalty: 0.1 };
         let mut sums = measured(10.0, 1000.0);
         let before = PRIOR.integrate(&sums);
-        sums.add(1.0, &Sums::along(&fit, 1e-3));
+        sums.add(1.0, &Sums::along(&SeveralPushes::of_one(&fit), &[1e-3]));
         assert!(PRIOR.integrate(&sums).log < before.log);
-        sums.add(-1.0, &Sums::along(&fit, 1e-3));
+        sums.add(-1.0, &Sums::along(&SeveralPushes::of_one(&fit), &[1e-3]));
         assert!((PRIOR.integrate(&sums).log - before.log).abs() < 1e-9);
-        assert_eq!(PRIOR.integrate(&Sums::default()).log, 0.0);
+        assert_eq!(PRIOR.integrate(&Sums::<1>::NONE).log, 0.0);
+    }
+
+    /// Two contacts that share joints.
+    fn of_two_contacts(forces: [f64; 2], stiffnesses: [f64; 2]) -> Sums<2> {
+        let mut sums = Sums::NONE;
+        for k in 0..12 {
+            let deeper = [2e-3 * (0.9 * f64::from(k)).sin(), 3e-3 * (1.7 * f64::from(k)).cos()];
+            let gain = [[1.0 + 0.1 * f64::from(k), 0.6], [0.6, 2.0]];
+            let torque: [f64; 2] = std::array::from_fn(|i| forces[i] + stiffnesses[i] * deeper[i]);
+            let product = std::array::from_fn(|i| gain[i][0] * torque[0] + gain[i][1] * torque[1]);
+            let target = product[0] * torque[0] + product[1] * torque[1] + 2.0;
+            let pushes = SeveralPushes { gain, product, target, penalty: 0.0 };
+            sums.add(1.0, &Sums::along(&pushes, &deeper));
+        }
+        sums
+    }
+
+    #[test]
+    fn forces_and_stiffnesses_of_two_contacts_are_found_also_at_the_ends_of_their_ranges() {
+        let found = PRIOR.integrate(&of_two_contacts([12.0, 30.0], [2500.0, 800.0]));
+        assert!((found.misfit - 24.0).abs() < 1e-6, "{found:?}");
+        assert!(
+            (found.force[0] - 12.0).abs() < 1e-6 && (found.stiffness[1] - 800.0).abs() < 1e-4,
+            "{found:?}"
+        );
+        // A stiffness below the least; a force above the greatest.
+        assert_eq!(PRIOR.integrate(&of_two_contacts([12.0, 30.0], [100.0, 800.0])).stiffness[0], 300.0);
+        let sums = of_two_contacts([12.0, 130.0], [2500.0, 800.0]);
+        let found = PRIOR.integrate(&sums);
+        assert_eq!(found.force[1], 100.0);
+        // Nothing within the ranges explains more.
+        let numbers: [Vector2<f64>; 2] =
+            std::array::from_fn(|i| Vector2::new(found.force[i], found.stiffness[i]));
+        for (i, a, step) in
+            [(0, 0, 0.01), (0, 0, -0.01), (0, 1, 5.0), (1, 0, -0.01), (1, 1, 5.0), (1, 1, -5.0)]
+        {
+            let mut other = numbers;
+            other[i][a] += step;
+            if PRIOR.contain(&other[i]) {
+                assert!(sums.misfit(&other) >= found.misfit - 1e-6, "{i} {a} {step} {found:?}");
+            }
+        }
+        // The order of contacts is no matter.
+        let mut turned = sums;
+        turned.reorder(&[1, 0]);
+        let other = PRIOR.integrate(&turned);
+        assert!((other.log - found.log).abs() < 1e-6 && other.force[0] == found.force[1]);
+    }
+
+    #[test]
+    fn contacts_that_share_no_joints_are_independent() {
+        let fit = |k: u32, scale: f64| {
+            let (deeper, gain) = (scale * 2e-3 * (0.9 * f64::from(k)).sin(), 1.0 + 0.1 * f64::from(k));
+            let product = gain * (10.0 * scale + 2000.0 * deeper);
+            (gain, product, deeper)
+        };
+        let (mut both, mut first, mut second) = (Sums::<2>::NONE, Sums::<1>::NONE, Sums::<1>::NONE);
+        for k in 0..12 {
+            let [(gain, product, deeper), other] = [fit(k, 1.0), fit(k, 2.0)];
+            let target = product * product / gain + other.1 * other.1 / other.0;
+            let one = |gain: f64, product: f64| SeveralPushes {
+                gain: [[gain]],
+                product: [product],
+                target: product * product / gain,
+                penalty: 0.0,
+            };
+            first.add(1.0, &Sums::along(&one(gain, product), &[deeper]));
+            second.add(1.0, &Sums::along(&one(other.0, other.1), &[other.2]));
+            let gain = [[gain, 0.0], [0.0, other.0]];
+            let pushes = SeveralPushes { gain, product: [product, other.1], target, penalty: 0.0 };
+            both.add(1.0, &Sums::along(&pushes, &[deeper, other.2]));
+        }
+        let alone = PRIOR.integrate(&first).log + PRIOR.integrate(&second).log;
+        assert!((PRIOR.integrate(&both).log - alone).abs() < 1e-6 * alone.abs());
     }
 }

@@ -46,6 +46,14 @@ impl Frame {
         &self.gram
     }
 
+    /// `wrench^T between other` is the inner product of what a wrench at this link's origin does and what another one does at that of
+    /// another link.
+    pub fn between(&self, other: &Frame) -> Matrix6<f64> {
+        // Links share the joints that both chains begin with.
+        let shared = self.rows.iter().zip(&other.rows).take_while(|(own, other)| own == other).count();
+        (0..shared).map(|axis| self.column(axis) * other.column(axis).transpose()).sum()
+    }
+
     /// The rows of a measurement that feel the link: the velocity variables that move it, then the components of the wrenches of
     /// sensors that it loads.
     pub fn rows(&self) -> &[usize] {

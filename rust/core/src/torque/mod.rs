@@ -9,6 +9,7 @@ mod link_target;
 mod noise_model;
 mod place_step;
 mod push_likelihood;
+mod several_pushes;
 mod target;
 
 pub use cone::{best_cone_force, ConeForce, ConePart};
@@ -17,9 +18,9 @@ pub(crate) use fit::{BestForce, NormalFit};
 pub(crate) use force_model::directions;
 pub use force_model::ForceModel;
 pub(crate) use frames::{Frame, Frames, SensorMount, WRENCH};
-pub(crate) use link_target::LinkTarget;
 pub use noise_model::NoiseModel;
 pub(crate) use noise_model::{largest, TorqueNoise, LEVEL, SENSOR_RELATIVE};
 pub(crate) use place_step::PlaceStep;
 pub(crate) use push_likelihood::{ForcePrior, PlaceBlock, PushLikelihood, LANES, PIECE};
+pub(crate) use several_pushes::{AllDirections, SeveralPushes};
 pub(crate) use target::Target;

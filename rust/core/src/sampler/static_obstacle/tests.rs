@@ -122,17 +122,63 @@ fn a_window_that_is_full_forgets_the_oldest() {
         ..SamplerOptions::default()
     };
     let mut sampler = StaticObstacleSampler::new(scene.robot.clone(), &options).expect("valid options");
+    let mut hypotheses = vec![];
     for tick in 0..20 {
         let q = scene.pose(tick);
         let Some((torque, _)) = scene.at(&q) else { continue };
         sampler.update(&q, &torque, None).expect("valid input");
         assert!(sampler.measurements.len() <= 5);
+        let path = path::<2>(&sampler);
+        if hypotheses.is_empty() {
+            let claims = |k| {
+                [k, 7 * k + 3].map(|place| path.claim(ContactModel::Obstacle, place, 0.01 * place as f64))
+            };
+            hypotheses.extend((0..10).filter_map(|k| path.make(claims(k), None)));
+        } else {
+            hypotheses.iter_mut().for_each(|hypothesis| path.follow(hypothesis));
+        }
     }
     // What was added and taken away is what is there.
-    let path = path(&sampler.robot, &sampler.measurements, &sampler.options, &sampler.models);
-    for hypothesis in sampler.samples.all.iter().take(50) {
-        let anew = path.make(hypothesis.claim, None).expect("a surface");
+    assert_eq!(hypotheses.len(), 10);
+    for hypothesis in &hypotheses {
+        let anew = path(&sampler).make(hypothesis.contacts.map(|contact| contact.claim), None);
+        let anew = anew.expect("a surface");
         let error = (anew.marginal.log - hypothesis.marginal.log).abs();
         assert!(error < 1e-6 * (1.0 + anew.marginal.log.abs()), "{error} {}", anew.marginal.log);
     }
+}
+
+fn path<const N: usize>(sampler: &StaticObstacleSampler) -> super::super::path::ContactPath<'_, N> {
+    let StaticObstacleSampler { robot, measurements, options, models, places, .. } = sampler;
+    super::Scene { robot, measurements, options, models, places }.path()
+}
+
+#[test]
+fn two_contacts_are_found_together() {
+    let [first, second] = [Scene::new(3, 0.3), Scene::new(6, 0.8)];
+    let options = SamplerOptions {
+        particles: 3000,
+        max_contacts: 2,
+        force_model: ForceModel::FrictionCone(0.0),
+        ..SamplerOptions::default()
+    };
+    let mut sampler = StaticObstacleSampler::new(first.robot.clone(), &options).expect("valid options");
+    let mut truth = [Vector3::zeros(); 2];
+    for tick in 0..60 {
+        let q = first.pose(tick);
+        let (Some(one), Some(other)) = (first.at(&q), second.at(&q)) else { continue };
+        truth = [one.1, other.1];
+        let torque: Vec<f64> = one.0.iter().zip(&other.0).map(|(one, other)| one + other).collect();
+        sampler.update(&q, &torque, None).expect("valid input");
+    }
+    let found = sampler.estimate();
+    for (link, truth) in [3, 6].into_iter().zip(truth) {
+        let of_link =
+            [&found.estimate, &found.others[0]].into_iter().filter_map(|estimate| estimate.contact.as_ref());
+        let contact =
+            of_link.clone().find(|contact| contact.link.get() == link).expect("a contact on the link");
+        let error = (contact.point - truth).norm();
+        assert!(error < 0.01, "link {link}: {contact:?} {error}");
+    }
+    assert!(sampler.number_probabilities()[1] > 0.9, "{:?}", sampler.number_probabilities());
 }
