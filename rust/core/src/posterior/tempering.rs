@@ -42,7 +42,8 @@ impl Logs {
     }
 }
 
-/// A sample is wanted whose logarithm of the density at a share of the way is greater than the least.
+/// A sample is wanted whose logarithm of the density at a share of the way, with that of how many times as likely the way back is
+/// proposed, is greater than the least.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Wanted {
     pub share: f64,
@@ -54,6 +55,11 @@ impl Wanted {
     pub fn takes(&self, logs: Logs) -> bool {
         logs.at(self.share) > self.least
     }
+
+    /// Where the way back is so many times as likely to be proposed, its logarithm.
+    pub fn with_back(self, log_back: f64) -> Self {
+        Wanted { least: self.least - log_back, ..self }
+    }
 }
 
 /// The way from one distribution to another.
@@ -64,9 +70,9 @@ pub(crate) trait Path: Sync {
     /// The densities at a sample.
     fn logs(&self, sample: &Self::Sample) -> Logs;
 
-    /// Another sample near one, as likely to be proposed from there as the other way round; none where there is none, and it
-    /// may be none where it is not `wanted`, which saves the work of knowing its densities. The proposal may depend on the `others`
-    /// that are about there, and use the random numbers 0 to 62 of the stream from `first` on.
+    /// Another sample; none where there is none, and it may be none where it is not `wanted`, which saves the work of knowing its
+    /// densities. The proposal may depend on the `others` that are about there, and use the random numbers 0 to 62 of the stream from
+    /// `first` on, and of streams forked with these numbers.
     fn propose(
         &self,
         sample: &Self::Sample,
@@ -74,7 +80,15 @@ pub(crate) trait Path: Sync {
         wanted: Wanted,
         random: &Stream,
         first: u64,
-    ) -> Option<Self::Sample>;
+    ) -> Option<Proposal<Self::Sample>>;
+}
+
+/// Another sample that is proposed.
+#[derive(Debug, Clone)]
+pub(crate) struct Proposal<S> {
+    pub sample: S,
+    /// Logarithm of how many times as likely the way back is proposed (Hastings 1970).
+    pub log_back: f64,
 }
 
 /// How samples are drawn anew.
@@ -214,8 +228,11 @@ impl<S: Clone + Send + Sync> Samples<S> {
                     let least = path.logs(sample).at(share) + stream.uniform(first + DECISION).ln();
                     let wanted = Wanted { share, least };
                     let other = path.propose(sample, others, wanted, &stream, first);
-                    if let Some(other) = other.filter(|other| wanted.takes(path.logs(other))) {
-                        *sample = other;
+                    let taken = |other: &Proposal<S>| {
+                        wanted.with_back(other.log_back).takes(path.logs(&other.sample))
+                    };
+                    if let Some(other) = other.filter(taken) {
+                        *sample = other.sample;
                         accepted.fetch_add(1, Ordering::Relaxed);
                     }
                 }
@@ -258,9 +275,10 @@ mod tests {
             _: Wanted,
             random: &Stream,
             first: u64,
-        ) -> Option<[f64; 2]> {
+        ) -> Option<Proposal<[f64; 2]>> {
             let steps = random.normals(first);
-            Some(std::array::from_fn(|k| sample[k] + 1.5 * self.noise[k] * steps[k]))
+            let moved = std::array::from_fn(|k| sample[k] + 1.5 * self.noise[k] * steps[k]);
+            Some(Proposal { sample: moved, log_back: 0.0 })
         }
     }
 
@@ -344,8 +362,10 @@ mod tests {
                 _: Wanted,
                 random: &Stream,
                 first: u64,
-            ) -> Option<f64> {
-                (random.uniform(first) < 0.9).then(|| sample + 0.1 * random.normals(first + 1)[0])
+            ) -> Option<Proposal<f64>> {
+                let moved =
+                    || Proposal { sample: sample + 0.1 * random.normals(first + 1)[0], log_back: 0.0 };
+                (random.uniform(first) < 0.9).then(moved)
             }
         }
         let stop = AtomicBool::new(false);
@@ -378,7 +398,7 @@ mod tests {
                 _: Wanted,
                 _: &Stream,
                 _: u64,
-            ) -> Option<[f64; 2]> {
+            ) -> Option<Proposal<[f64; 2]>> {
                 None
             }
         }

@@ -72,6 +72,11 @@ impl Measurements {
         }
     }
 
+    /// Those that count before or now, in the order of time.
+    pub fn all(&self) -> impl Iterator<Item = &Measurement> {
+        self.order.iter().map(|place| &self.all[*place])
+    }
+
     /// Those that count before or now, the newest first and then from far apart to near: a hypothesis that does not fit shows
     /// it early.
     pub fn scattered(&self) -> impl Iterator<Item = &Measurement> {

@@ -8,6 +8,7 @@
 //! (`population.rs`).
 
 mod between;
+mod elsewhere;
 mod hypothesis;
 mod measurements;
 mod options;

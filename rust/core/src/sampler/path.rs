@@ -7,7 +7,7 @@ use super::measurements::{Measurement, Measurements};
 use super::sums::{Marginal, Prior, Sums};
 use crate::math::random::Stream;
 use crate::particle::tangent;
-use crate::posterior::tempering::{Logs, Path, Wanted};
+use crate::posterior::tempering::{Logs, Path, Proposal, Wanted};
 use crate::robot::Robot;
 use crate::surface::{Surface, SurfacePoint};
 use crate::torque::ForceModel;
@@ -28,7 +28,7 @@ const ALONE: [f64; 2] = [0.4, 0.6];
 const MODEL_MOVES: f64 = 0.2;
 
 /// Share of moves that place a contact anywhere, of two contacts or more: which links are touched is not known from one of them.
-const ANYWHERE: f64 = 0.2;
+const ANYWHERE: f64 = 0.3;
 
 /// The model of so many contacts.
 pub(super) struct ContactPath<'a, const N: usize> {
@@ -55,7 +55,7 @@ impl<const N: usize> ContactPath<'_, N> {
     }
 
     /// Where the claimed contact was first.
-    fn contact(&self, claim: Claim) -> Contact {
+    pub(super) fn contact(&self, claim: Claim) -> Contact {
         let place = &claim.place;
         let away = match claim.model {
             ContactModel::Obstacle => place.normal * claim.log_radius.exp(),
@@ -174,16 +174,19 @@ impl<const N: usize> Path for ContactPath<'_, N> {
         wanted: Wanted,
         random: &Stream,
         first: u64,
-    ) -> Option<Hypothesis<N>> {
+    ) -> Option<Proposal<Hypothesis<N>>> {
         let draw = |k: u64| random.uniform(first + k);
         let mut claims = sample.contacts.map(|contact| contact.claim);
         let contact = (draw(30) * N as f64) as usize;
-        claims[contact] = if N > 1 && draw(31) < ANYWHERE {
-            self.claim(claims[contact].model, (draw(32) * self.places.len() as f64) as usize, draw(33))
+        let mut log_back = 0.0;
+        if N > 1 && draw(31) < ANYWHERE {
+            (claims[contact], log_back) =
+                self.elsewhere(sample, contact, wanted.share, random.fork(first))?;
         } else {
-            self.near(claims[contact], others, random, first)?
-        };
-        self.make(claims, Some(wanted))
+            claims[contact] = self.near(claims[contact], others, random, first)?;
+        }
+        let sample = self.make(claims, Some(wanted.with_back(log_back)))?;
+        Some(Proposal { sample, log_back })
     }
 }
 

@@ -33,6 +33,8 @@ const GRANTED: f64 = 3.0;
 const FITTED: usize = 5;
 /// Poses that tell an obstacle that stays from what is none.
 const LEAST_POSES: usize = 4;
+/// A number of contacts that is less probable is followed no longer.
+const DROPPED: f64 = 1e-9;
 /// A number of contacts that is less probable is not sure.
 const SURE_NUMBER: f64 = 0.8;
 
@@ -75,8 +77,9 @@ pub struct StaticObstacleSampler {
     instant: Instant,
     measurements: Measurements,
     places: Vec<(u32, SurfacePoint)>,
-    /// Of one contact, two and so on.
+    /// Of one contact, two and so on, and which of these are followed.
     populations: Vec<Box<dyn Population>>,
+    followed: Vec<bool>,
     /// Probability of each, and the most probable.
     numbers: Vec<f64>,
     likely: usize,
@@ -110,6 +113,7 @@ impl StaticObstacleSampler {
             .collect::<Result<_>>()?;
         Ok(StaticObstacleSampler {
             populations,
+            followed: vec![true; most],
             numbers: vec![0.0; most],
             likely: 0,
             clusters: Clusters::new(options.particles, robot.links().len())?,
@@ -272,6 +276,7 @@ impl StaticObstacleSampler {
         let started = event == Event::Started;
         if started {
             self.measurements.clear();
+            self.followed.fill(true);
         }
         self.measurements.take_in(&self.instant, kept);
         let Self {
@@ -280,6 +285,7 @@ impl StaticObstacleSampler {
             models,
             measurements,
             populations,
+            followed,
             moves,
             window,
             stop,
@@ -304,7 +310,7 @@ impl StaticObstacleSampler {
             .sum();
         let (mut effective, mut log_evidence) = ([0.0; MOST_CONTACTS], [0.0; MOST_CONTACTS]);
         pool.install(|| {
-            for (k, population) in populations.iter_mut().enumerate() {
+            for (k, population) in populations.iter_mut().enumerate().filter(|(k, _)| followed[*k]) {
                 let course = Course { threads, stop };
                 let travelled = population.update(scene, started, tempering, random.fork(k as u64), course);
                 (effective[k], log_evidence[k]) = (travelled.effective, travelled.log_evidence + without);
@@ -317,13 +323,20 @@ impl StaticObstacleSampler {
 
     /// How probable each number of contacts is, all being as probable beforehand.
     fn choose(&mut self) {
-        let logs = || self.populations.iter().map(|population| population.log_evidence());
-        let greatest = logs().fold(f64::NEG_INFINITY, f64::max);
-        for (number, log) in self.numbers.iter_mut().zip(logs()) {
-            *number = if greatest > f64::NEG_INFINITY { (log - greatest).exp() } else { 1.0 };
+        let log = |k: usize| match self.followed[k] {
+            true => self.populations[k].log_evidence(),
+            false => f64::NEG_INFINITY,
+        };
+        let greatest = (0..self.numbers.len()).map(log).fold(f64::NEG_INFINITY, f64::max);
+        for (k, number) in self.numbers.iter_mut().enumerate() {
+            *number = if greatest > f64::NEG_INFINITY { (log(k) - greatest).exp() } else { 1.0 };
         }
         let sum: f64 = self.numbers.iter().sum();
         self.numbers.iter_mut().for_each(|number| *number /= sum);
+        if self.measurements.len() >= LEAST_POSES {
+            let Self { followed, numbers, .. } = self;
+            followed.iter_mut().zip(numbers).for_each(|(followed, number)| *followed &= *number >= DROPPED);
+        }
         // The least number of those that are as probable.
         self.likely = (0..self.numbers.len())
             .rev()

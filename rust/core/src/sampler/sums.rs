@@ -11,10 +11,13 @@ const SINGULAR: f64 = 1e-12;
 /// Contacts at most, and so twice as many numbers.
 pub(crate) const MOST_CONTACTS: usize = 4;
 const MOST_NUMBERS: usize = 2 * MOST_CONTACTS;
-/// Sweeps over the contacts where one of the numbers is at an end of its range, at most, and the change of a sweep that ends them,
-/// relative to the numbers.
+/// Rounds of holding numbers at the ends of their ranges, for each contact; they end where letting go of any would lessen the misfit
+/// by less than this share of all torques.
+const ROUNDS: usize = 4;
+const SETTLED: f64 = 1e-6;
+/// Sweeps over the contacts where these rounds do not end, and the change of a sweep that ends them, relative to the numbers.
 const SWEEPS: usize = 40;
-const SETTLED: f64 = 1e-5;
+const UNCHANGED: f64 = 1e-5;
 
 /// Sums over measurements, each with a force `F a + K b` of each contact: `F` the force at the first touch, `K` the stiffness, `a` a
 /// direction and `b` how far the spring of the contact is pressed in more than then (m).
@@ -122,35 +125,57 @@ impl<const N: usize> Sums<N> {
         others.fold(self.product[contact], |left, other| left - other)
     }
 
-    /// Forces and stiffnesses without bounds; none where the measurements do not tell them apart.
-    fn unbounded(&self) -> Option<[Vector2<f64>; N]> {
-        let mut rows = [[0.0; MOST_NUMBERS]; MOST_NUMBERS];
-        let mut right = [0.0; MOST_NUMBERS];
+    /// The numbers that explain the torques best while some are held where they are; none where the measurements do not tell them
+    /// apart. Two a contact, one after the other.
+    fn best_of_free(
+        &self,
+        numbers: &[f64; MOST_NUMBERS],
+        held: &[bool; MOST_NUMBERS],
+    ) -> Option<[f64; MOST_NUMBERS]> {
+        let gain = |a: usize, b: usize| self.gain[a / 2][b / 2][(a % 2, b % 2)];
+        let mut order = [0; MOST_NUMBERS];
+        let mut free = 0;
         for a in 0..2 * N {
-            right[a] = self.product[a / 2][a % 2];
-            for b in 0..2 * N {
-                rows[a][b] = self.gain[a / 2][b / 2][(a % 2, b % 2)];
+            if !held[a] {
+                order[free] = a;
+                free += 1;
             }
         }
-        let diagonal: [f64; MOST_NUMBERS] = std::array::from_fn(|a| rows[a][a]);
-        for a in 0..2 * N {
-            let pivot = rows[a][a];
-            if pivot.is_nan() || pivot <= SINGULAR * diagonal[a] {
+        let mut rows = [[0.0; MOST_NUMBERS + 1]; MOST_NUMBERS];
+        for i in 0..free {
+            let a = order[i];
+            let of_held: f64 = (0..2 * N).filter(|b| held[*b]).map(|b| gain(a, b) * numbers[b]).sum();
+            for j in i..free {
+                rows[i][j] = gain(a, order[j]);
+            }
+            rows[i][MOST_NUMBERS] = self.product[a / 2][a % 2] - of_held;
+        }
+        // Symmetric: what is left of the diagonal is above it.
+        for i in 0..free {
+            let pivot = rows[i][i];
+            if pivot.is_nan() || pivot <= SINGULAR * gain(order[i], order[i]) {
                 return None;
             }
-            for below in a + 1..2 * N {
-                let share = rows[below][a] / pivot;
-                for b in a..2 * N {
-                    rows[below][b] -= share * rows[a][b];
+            for below in i + 1..free {
+                let share = rows[i][below] / pivot;
+                for j in below..free {
+                    rows[below][j] -= share * rows[i][j];
                 }
-                right[below] -= share * right[a];
+                rows[below][MOST_NUMBERS] -= share * rows[i][MOST_NUMBERS];
             }
         }
-        for a in (0..2 * N).rev() {
-            let later: f64 = (a + 1..2 * N).map(|b| rows[a][b] * right[b]).sum();
-            right[a] = (right[a] - later) / rows[a][a];
+        let mut found = *numbers;
+        for i in (0..free).rev() {
+            let later: f64 = (i + 1..free).map(|j| rows[i][j] * found[order[j]]).sum();
+            found[order[i]] = (rows[i][MOST_NUMBERS] - later) / rows[i][i];
         }
-        Some(std::array::from_fn(|i| Vector2::new(right[2 * i], right[2 * i + 1])))
+        Some(found)
+    }
+
+    /// Half of what the misfit grows by a number.
+    fn slope(&self, numbers: &[f64; MOST_NUMBERS], a: usize) -> f64 {
+        let felt: f64 = (0..2 * N).map(|b| self.gain[a / 2][b / 2][(a % 2, b % 2)] * numbers[b]).sum();
+        felt - self.product[a / 2][a % 2]
     }
 
     /// Of one plus the precision in units of the widths of the prior: at least one but for rounding.
@@ -253,12 +278,11 @@ impl Prior {
         within(number[0], self.force) && within(number[1], self.stiffness)
     }
 
-    /// The forces and stiffnesses within their ranges that explain the torques best: those that do anywhere, or by sweeps over the
-    /// contacts.
+    /// The forces and stiffnesses within their ranges that explain the torques best: by holding some at
+    /// the ends, or by sweeps over the contacts.
     fn best<const N: usize>(&self, sums: &Sums<N>) -> [Vector2<f64>; N] {
         if N > 1 {
-            let found = sums.unbounded().filter(|found| found.iter().all(|number| self.contain(number)));
-            if let Some(found) = found {
+            if let Some(found) = self.with_some_held(sums) {
                 return found;
             }
         }
@@ -270,11 +294,42 @@ impl Prior {
                 change = change.max((found - numbers[i]).component_div(&found).amax());
                 numbers[i] = found;
             }
-            if change < SETTLED {
+            if change < UNCHANGED {
                 break;
             }
         }
         numbers
+    }
+
+    /// By holding numbers at the ends of their ranges (an active-set method); none where it does not end soon.
+    fn with_some_held<const N: usize>(&self, sums: &Sums<N>) -> Option<[Vector2<f64>; N]> {
+        let range = |a: usize| if a % 2 == 0 { self.force } else { self.stiffness };
+        let (mut numbers, mut held) = ([0.0; MOST_NUMBERS], [false; MOST_NUMBERS]);
+        for _ in 0..ROUNDS * N {
+            numbers = sums.best_of_free(&numbers, &held)?;
+            let mut outside = false;
+            for a in 0..2 * N {
+                let [low, high] = range(a);
+                if !(low..=high).contains(&numbers[a]) {
+                    (numbers[a], held[a], outside) = (numbers[a].clamp(low, high), true, true);
+                }
+            }
+            if outside {
+                continue;
+            }
+            // Let go of what pulls inward most, in proportion to its range.
+            let pull = |a: usize| {
+                let ([low, high], slope) = (range(a), sums.slope(&numbers, a));
+                (high - low) * if numbers[a] <= low { -slope } else { slope }
+            };
+            let most =
+                (0..2 * N).filter(|a| held[*a]).map(|a| (a, pull(a))).max_by(|a, b| a.1.total_cmp(&b.1));
+            match most {
+                Some((a, pull)) if pull > SETTLED * sums.target => held[a] = false,
+                _ => return Some(std::array::from_fn(|i| Vector2::new(numbers[2 * i], numbers[2 * i + 1]))),
+            }
+        }
+        None
     }
 
     /// The force and stiffness of one contact, within their ranges: those that explain the torques best anywhere, or the best of an

@@ -31,14 +31,7 @@ impl<const N: usize> ContactPath<'_, N> {
     ) -> Sums<N> {
         let mut deeper = [0.0; N];
         for ((contact, touch), deeper) in contacts.iter().zip(touches.iter_mut()).zip(&mut deeper) {
-            let Contact { claim, anchor, .. } = contact;
-            let Some(surface) = self.surface(claim.link) else { continue };
-            let local = measurement.links[claim.link as usize].pose.inverse_transform_point(anchor);
-            let near = surface.closest_point_near(&local, touch.triangle);
-            let (distance, normal) = signed(&near, &local);
-            *deeper = claim.log_radius.exp() - distance;
-            let forces = Forces { first: -normal, spring: -normal * *deeper, ..Forces::default() };
-            *touch = Touch { point: near.point, normal, triangle: near.triangle, forces };
+            (*touch, *deeper) = self.place(contact, measurement);
         }
         let pushes = if N == 1 {
             SeveralPushes::of_one(&self.fit(&contacts[0].claim, measurement, &touches[0]))
@@ -46,6 +39,18 @@ impl<const N: usize> ContactPath<'_, N> {
             self.pushes(contacts, measurement, touches)
         };
         Sums::along(&pushes, &deeper)
+    }
+
+    /// Where an obstacle touches, and how much deeper than at the first touch (m).
+    pub(super) fn place(&self, contact: &Contact, measurement: &Measurement) -> (Touch, f64) {
+        let Contact { claim, anchor, touch } = contact;
+        let Some(surface) = self.surface(claim.link) else { return (*touch, 0.0) };
+        let local = measurement.links[claim.link as usize].pose.inverse_transform_point(anchor);
+        let near = surface.closest_point_near(&local, touch.triangle);
+        let (distance, normal) = signed(&near, &local);
+        let deeper = claim.log_radius.exp() - distance;
+        let forces = Forces { first: -normal, spring: -normal * deeper, ..Forces::default() };
+        (Touch { point: near.point, normal, triangle: near.triangle, forces }, deeper)
     }
 
     fn person(&self, claim: &Claim, measurement: &Measurement, touch: &mut Touch) -> Sums<N> {

@@ -32,6 +32,16 @@ impl<const N: usize> SeveralPushes<N> {
         pushes
     }
 
+    /// The squared torques that forces leave over.
+    pub fn misfit(&self, forces: &[f64; N]) -> f64 {
+        let mut misfit = self.target;
+        for i in 0..N {
+            let felt: f64 = (0..N).map(|j| self.gain[i][j] * forces[j]).sum();
+            misfit += forces[i] * (felt - 2.0 * self.product[i]);
+        }
+        misfit.max(0.0)
+    }
+
     /// The forces within a range that explain the target about best, each along its normal [N].
     pub fn forces(&self, [least, greatest]: [f64; 2]) -> [f64; N] {
         let mut forces = [least; N];
