@@ -49,11 +49,14 @@ pub(super) trait Population: std::fmt::Debug + Send + Sync {
     /// How many contacts each has.
     fn contacts(&self) -> usize;
 
-    /// Spreads the hypotheses anew where a contact has `started`, takes the newest measurement into all, and moves them.
+    /// Forgets which contact is which: others begin.
+    fn forget_order(&mut self);
+
+    /// Takes the newest measurement into all hypotheses, spread `anew` over the surface or as they are, and moves them.
     fn update(
         &mut self,
         scene: Scene<'_>,
-        started: bool,
+        anew: bool,
         tempering: Tempering,
         random: Stream,
         course: Course<'_>,
@@ -124,24 +127,27 @@ impl<const N: usize> Population for Hypotheses<N> {
         N
     }
 
+    fn forget_order(&mut self) {
+        self.orders = Orders::default();
+    }
+
     fn update(
         &mut self,
         scene: Scene<'_>,
-        started: bool,
+        anew: bool,
         tempering: Tempering,
         random: Stream,
         course: Course<'_>,
     ) -> Travelled {
         let path = scene.path::<N>();
         let count = self.samples.all.len();
-        if started {
+        if anew {
             self.samples.restart();
             self.log_evidence = 0.0;
-            self.orders = Orders::default();
         }
         let work = |start: usize, hypotheses: &mut [Hypothesis<N>]| {
             for (k, hypothesis) in hypotheses.iter_mut().enumerate() {
-                if !started {
+                if !anew {
                     path.follow(hypothesis);
                     continue;
                 }

@@ -273,8 +273,40 @@ impl StaticObstacleSampler {
     }
 
     fn follow(&mut self, event: Event, kept: f64) {
-        let started = event == Event::Started;
-        if started {
+        let event = match event {
+            Event::Continued => {
+                let before = self.population().misfit();
+                self.take_in(false, kept);
+                // One more contact, or one less: what is known of the others no longer tells what is measured.
+                if self.populations.len() > 1 && self.surprised(before) {
+                    self.take_in(true, kept);
+                    Event::Changed
+                } else {
+                    Event::Continued
+                }
+            }
+            _ => {
+                self.populations.iter_mut().for_each(|population| population.forget_order());
+                self.take_in(true, kept);
+                Event::Started
+            }
+        };
+        self.say(event);
+    }
+
+    /// Whether all hypotheses leave more of the newest torques over than noise does, though they explained those before.
+    fn surprised(&self, before: f64) -> bool {
+        let (poses, rows) = (self.measurements.len(), self.instant.torque.len());
+        let noise = (before / ((poses - 1) * rows) as f64).max(1.0);
+        let limit = GRANTED * GRANTED * upper_limit(rows);
+        let misfits = self.populations.iter().zip(&self.followed).filter(|(_, followed)| **followed);
+        let now = misfits.map(|(population, _)| population.misfit()).fold(f64::INFINITY, f64::min);
+        poses > LEAST_POSES && self.found.explained && now - before > noise * limit
+    }
+
+    /// Takes the newest measurement in, `anew` without those before.
+    fn take_in(&mut self, anew: bool, kept: f64) {
+        if anew {
             self.measurements.clear();
             self.followed.fill(true);
         }
@@ -308,17 +340,17 @@ impl StaticObstacleSampler {
             .scattered()
             .map(|measurement| 0.5 * (measurement.now - measurement.before) * measurement.target.squared)
             .sum();
-        let (mut effective, mut log_evidence) = ([0.0; MOST_CONTACTS], [0.0; MOST_CONTACTS]);
+        let mut said = [(0.0, 0.0); MOST_CONTACTS];
         pool.install(|| {
             for (k, population) in populations.iter_mut().enumerate().filter(|(k, _)| followed[*k]) {
                 let course = Course { threads, stop };
-                let travelled = population.update(scene, started, tempering, random.fork(k as u64), course);
-                (effective[k], log_evidence[k]) = (travelled.effective, travelled.log_evidence + without);
-                population.add_log_evidence(log_evidence[k]);
+                let travelled = population.update(scene, anew, tempering, random.fork(k as u64), course);
+                said[k] = (travelled.effective, travelled.log_evidence + without);
+                population.add_log_evidence(said[k].1);
             }
         });
         self.choose();
-        self.say(event, effective[self.likely], log_evidence[self.likely]);
+        (self.found.effective_samples, self.found.log_evidence) = said[self.likely];
     }
 
     /// How probable each number of contacts is, all being as probable beforehand.
@@ -344,10 +376,12 @@ impl StaticObstacleSampler {
             .unwrap_or(0);
     }
 
-    fn say(&mut self, event: Event, effective: f64, log_evidence: f64) {
+    fn say(&mut self, event: Event) {
         let Self { robot, instant, populations, numbers, likely, clusters, found, measurements, .. } = self;
         let population = &populations[*likely];
+        let told = (found.effective_samples, found.log_evidence);
         found.clear(event);
+        (found.effective_samples, found.log_evidence) = told;
         for contact in 0..population.contacts() {
             population.find(contact, clusters, robot, &instant.frames);
             let estimate = match contact {
@@ -356,7 +390,6 @@ impl StaticObstacleSampler {
             };
             estimate.set(clusters, &instant.frames, 0.0);
         }
-        (found.effective_samples, found.log_evidence) = (effective, log_evidence);
         let misfit = population.misfit();
         let poses = measurements.len();
         let rows = poses * instant.torque.len();

@@ -182,3 +182,30 @@ fn two_contacts_are_found_together() {
     }
     assert!(sampler.number_probabilities()[1] > 0.9, "{:?}", sampler.number_probabilities());
 }
+
+#[test]
+fn a_contact_that_begins_later_and_one_that_ends_are_noticed() {
+    let [first, second] = [Scene::new(3, 0.3), Scene::new(6, 0.8)];
+    let options = SamplerOptions { particles: 2000, max_contacts: 2, ..SamplerOptions::default() };
+    let mut sampler = StaticObstacleSampler::new(first.robot.clone(), &options).expect("valid options");
+    let mut run = |ticks: std::ops::Range<usize>, touching: [bool; 2]| {
+        let (mut changes, mut numbers) = (0, vec![]);
+        for tick in ticks {
+            let q = first.pose(tick);
+            let (Some(one), Some(other)) = (first.at(&q), second.at(&q)) else { continue };
+            let torque: Vec<f64> = (0..7)
+                .map(|j| {
+                    [one.0[j], other.0[j]].iter().zip(touching).map(|(x, on)| if on { *x } else { 0.0 }).sum()
+                })
+                .collect();
+            let found = sampler.update(&q, &torque, None).expect("valid input");
+            changes += usize::from(found.event == Event::Changed);
+            let contacts = std::iter::once(&found.estimate).chain(&found.others);
+            numbers.push(contacts.filter(|estimate| estimate.contact.is_some()).count());
+        }
+        (changes, numbers.last().copied())
+    };
+    assert_eq!(run(0..30, [false, true]), (0, Some(1)));
+    assert_eq!(run(30..60, [true, true]), (1, Some(2)));
+    assert_eq!(run(60..90, [true, false]), (1, Some(1)));
+}
