@@ -105,6 +105,7 @@ ABOVE = (
     "test_identifiability_study",
     "test_next_motion",
     "test_real_arm",
+    "test_several_contacts",
     "test_single_contacts",
     "test_vorndamme2017",
 )

@@ -2112,7 +2112,7 @@ class ContactParticleFilter:
 
 @final
 class StaticObstacleSampler:
-    """Finds one contact anywhere on a robot from all joint torques that were measured of it (algorithm C3).
+    """Finds contacts anywhere on a robot from all joint torques that were measured of them (algorithm C3).
 
     Where `ContactParticleFilter` forgets what earlier motions taught, each particle here is an obstacle that stays where it is
     for good, and predicts the torques of a whole window of poses. Particles are taken from one measurement to the next by
@@ -2126,6 +2126,10 @@ class StaticObstacleSampler:
         models: What the contact may be with, one name or several: "obstacle" (round, stays where it is), "person" (the point
             stays on the link, the force changes as it likes), "both" (the point stays on the link, and a spring ties it to
             where it was in the world). Of several, `model_probabilities` says which explains the torques.
+        max_contacts: Contacts that there may be at the same time, 1 to 4. Of more than one, all are with obstacles, and there are
+            as many particles for each number of contacts: an update takes several times as long. `number_probabilities`
+            says how many contacts there are, `estimate.contacts` has an estimate of each. Where one comes or goes, the
+            window begins anew.
         window: Poses whose torques are kept, 2 to 1000.
         forgetting_time: Time after which a measurement counts for a part in e of what it did when it was new [s], so that
             an obstacle that creeps is followed. None for obstacles that stay.
@@ -2167,6 +2171,7 @@ class StaticObstacleSampler:
         *,
         particles: int = 10000,
         models: Literal["obstacle", "person", "both"] | Iterable[str] = "obstacle",
+        max_contacts: int = 1,
         window: int = 40,
         forgetting_time: float | None = None,
         moves: int = 2,
@@ -2223,6 +2228,12 @@ class StaticObstacleSampler:
     def model_probabilities(self) -> dict[str, float]:
         """Probability of each of `models`, by name; all zero without a contact. A new dict at every access."""
     @property
+    def number_probabilities(self) -> NDArray[np.float64]:
+        """Probability that there are one, two, ... contacts, `(max_contacts,)`; all zero without a contact. A new array at every access.
+
+        Each number is as probable as the others beforehand.
+        """
+    @property
     def log_evidence(self) -> float:
         """How many times as likely all torques are under one of the models as without a contact, its natural logarithm.
 
@@ -2230,7 +2241,7 @@ class StaticObstacleSampler:
         """
     @property
     def particles(self) -> Particles:
-        """The particles after the last update, one row each; a read-only copy."""
+        """The particles after the last update, one row a contact of each, of the most probable number of contacts; a read-only copy."""
 
 @final
 class Particles:
@@ -2248,6 +2259,9 @@ class Particles:
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property
+    def contact(self) -> NDArray[np.int64]:
+        """Number of the contact, `(n,)`: zero where there is one. Of several contacts, the rows of the second follow those of the first."""
+    @property
     def link(self) -> NDArray[np.int64]:
         """Index into `robot.link_names`, `(n,)`."""
     @property
@@ -2264,11 +2278,11 @@ class Particles:
         """Stiffness of the contact, `(n,)` [N/m]."""
     @property
     def weight(self) -> NDArray[np.float64]:
-        """Weights, `(n,)`, which sum to one."""
+        """Weights, `(n,)`, which sum to one for each contact."""
 
 @disjoint_base
 class ContactEstimate:
-    """The contact as a filter sees it.
+    """The contact as a filter or a sampler sees it, and others beside it.
 
     Frozen; can be pickled and copied.
 
@@ -2286,7 +2300,8 @@ class ContactEstimate:
         """All attributes by name.
 
         Returns:
-            Plain Python values: numbers, strings, lists in place of arrays and tuples, and dicts in place of modes.
+            Plain Python values: numbers, strings, lists in place of arrays and tuples, and dicts in place of modes and of
+            `contacts`.
         """
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property
@@ -2296,8 +2311,8 @@ class ContactEstimate:
     def event(self) -> Literal["none", "started", "continued", "lost", "changed", "jumped"]:
         """What happened at this update.
 
-        "none", "started", "continued", "lost", "changed" (the contact is elsewhere than it was held to be) or "jumped"
-        (the pose did, so the search began anew).
+        "none", "started", "continued", "lost", "changed" (the contact is elsewhere than it was held to be, or there is one more or
+        one less of several) or "jumped" (the pose did, so the search began anew).
         """
     @property
     def link(self) -> str:
@@ -2329,6 +2344,13 @@ class ContactEstimate:
     @property
     def modes(self) -> tuple[Mode, ...]:
         """Clusters of particles, best first; at most eight. The same tuple at every access."""
+    @property
+    def contacts(self) -> tuple[ContactEstimate, ...]:
+        """One estimate for each contact, of which this is the first; empty without contact.
+
+        More than one only where several contacts are looked for (`max_contacts`). From update to update they stay in the same order
+        as long as there are as many.
+        """
     @property
     def ambiguous(self) -> bool:
         """Whether the data do not say which link, or where on it, or motion has not confirmed yet that it is a single push.

@@ -19,6 +19,7 @@ from .identifiability.options import Options as IdentifiabilityOptions
 from .memory.options import Options as MemoryOptions
 from .real_arm.options import Options as RealArmOptions
 from .recovery.options import Options as RecoveryOptions
+from .several_contacts.options import Options as SeveralContactsOptions
 from .vorndamme2017.options import Options as VorndammeOptions
 
 app = typer.Typer(
@@ -129,4 +130,10 @@ add_study(
     "memory",
     "Contacts on a moving arm, located by a sampler that remembers, by a particle filter and by a map.",
     MemoryOptions,
+)
+add_study(
+    app,
+    "several_contacts",
+    "Contacts at the same time on an arm or a humanoid, located together by a sampler.",
+    SeveralContactsOptions,
 )

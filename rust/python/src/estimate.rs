@@ -208,8 +208,8 @@ impl PyContactEstimate {
 
     /// What happened at this update.
     ///
-    /// "none", "started", "continued", "lost", "changed" (the contact is elsewhere than it was held to be) or "jumped"
-    /// (the pose did, so the search began anew).
+    /// "none", "started", "continued", "lost", "changed" (the contact is elsewhere than it was held to be, or there is one more or
+    /// one less of several) or "jumped" (the pose did, so the search began anew).
     #[getter]
     fn event(&self) -> &str {
         self.found.event.name()

@@ -39,9 +39,10 @@ const LONG: usize = 20_000;
 ///     models: What the contact may be with, one name or several: "obstacle" (round, stays where it is), "person" (the point
 ///         stays on the link, the force changes as it likes), "both" (the point stays on the link, and a spring ties it to
 ///         where it was in the world). Of several, `model_probabilities` says which explains the torques.
-///     max_contacts: Contacts that there may be at the same time, 1 to 4. Of more than one, all are with obstacles that began to
-///         touch together, and an update takes several times as long: it follows as many particles for each number of contacts.
-///         `number_probabilities` says how many there are, `estimate.contacts` has an estimate of each.
+///     max_contacts: Contacts that there may be at the same time, 1 to 4. Of more than one, all are with obstacles, and there are
+///         as many particles for each number of contacts: an update takes several times as long. `number_probabilities`
+///         says how many contacts there are, `estimate.contacts` has an estimate of each. Where one comes or goes, the
+///         window begins anew.
 ///     window: Poses whose torques are kept, 2 to 1000.
 ///     forgetting_time: Time after which a measurement counts for a part in e of what it did when it was new [s], so that
 ///         an obstacle that creeps is followed. None for obstacles that stay.
@@ -266,7 +267,7 @@ impl PyStaticObstacleSampler {
 
     /// Probability that there are one, two, ... contacts, `(max_contacts,)`; all zero without a contact. A new array at every access.
     ///
-    /// Each number is as probable as the others beforehand.
+    /// Beforehand, each further contact is a thousand times less probable than none: one that turns no joint is not told.
     #[getter]
     fn number_probabilities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         Ok(numbers(py, self.sole(py)?.number_probabilities()))

@@ -153,15 +153,15 @@ impl<const N: usize> Population for Hypotheses<N> {
                 }
                 let number = start + k;
                 let model = path.models[number % path.models.len()];
+                let draw = |row: usize| random.uniform((row * count + number) as u64);
                 let claims = std::array::from_fn(|contact| {
-                    let first = (2 * (contact * count + number)) as u64;
                     let places = path.places.len();
                     // The first contact of all is spread evenly.
                     let place = match contact {
                         0 => number * places / count,
-                        _ => (random.uniform(first + 1) * places as f64) as usize,
+                        _ => (draw(2 * contact + 1) * places as f64) as usize,
                     };
-                    path.claim(model, place, random.uniform(first))
+                    path.claim(model, place, draw(2 * contact))
                 });
                 if let Some(made) = path.make(claims, None) {
                     *hypothesis = made;

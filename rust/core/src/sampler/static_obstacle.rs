@@ -33,6 +33,8 @@ const GRANTED: f64 = 3.0;
 const FITTED: usize = 5;
 /// Poses that tell an obstacle that stays from what is none.
 const LEAST_POSES: usize = 4;
+/// How probable one more contact is beforehand, as a share: a contact that turns no joint can be anywhere, and is not looked for.
+const ONE_MORE: f64 = 1e-3;
 /// A number of contacts that is less probable is followed no longer.
 const DROPPED: f64 = 1e-9;
 /// A number of contacts that is less probable is not sure.
@@ -353,10 +355,10 @@ impl StaticObstacleSampler {
         (self.found.effective_samples, self.found.log_evidence) = said[self.likely];
     }
 
-    /// How probable each number of contacts is, all being as probable beforehand.
+    /// How probable each number of contacts is.
     fn choose(&mut self) {
         let log = |k: usize| match self.followed[k] {
-            true => self.populations[k].log_evidence(),
+            true => self.populations[k].log_evidence() + k as f64 * ONE_MORE.ln(),
             false => f64::NEG_INFINITY,
         };
         let greatest = (0..self.numbers.len()).map(log).fold(f64::NEG_INFINITY, f64::max);

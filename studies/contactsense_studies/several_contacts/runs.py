@@ -1,4 +1,4 @@
-"""Runs of a robot that touches several obstacles at once, in closed form: it is so slow that only the contacts count."""
+"""Runs of a robot that touches several obstacles at once, so slowly that only the contacts count."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def record_several(
     friction: float = 0.0,
     seed: int = 0,
 ) -> SeveralRun:
-    """A robot that leans on `contacts` spheres with different links out of `links`, and moves its joints at random.
+    """A robot that leans on `contacts` spheres with different ones of `links`, and moves at random.
 
     Args:
         robot: a floating base stays where it is.

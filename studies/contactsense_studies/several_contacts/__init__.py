@@ -1,0 +1,1 @@
+"""Contacts at the same time, located together."""
