@@ -10,6 +10,7 @@ from . import (
     memory,
     noisy_contacts,
     real_arm,
+    several_contacts,
     studies,
 )
 from .entry import Figure
@@ -18,6 +19,10 @@ PYTHON = ("python", "-m")
 CONTACTSENSE = (*PYTHON, "contactsense.cli")
 STUDY = (*CONTACTSENSE, "study")
 NOISE = ("--noise", "2", "0.1")
+ATLAS_CONTACTS = (
+    *("--robot", "atlas", "--contacts", "2", "--contacts", "3"),
+    *("--friction", "0.3", "--percent", "1", "--newton-metres", "0.1"),
+)
 
 FIGURES = (
     Figure(
@@ -188,6 +193,26 @@ FIGURES = (
         "docs/memory.md",
         reduce=memory.reduce,
         table=memory.error_table,
+        long=True,
+    ),
+    Figure(
+        "several_contacts_atlas",
+        "Contacts of Atlas at the same time, with friction, on branches without sensors.",
+        (*STUDY, "several_contacts", "--json", "--trials", "12", *ATLAS_CONTACTS),
+        "Twelve trials for each number of contacts, seed 0.",
+        "docs/several_contacts.md",
+        reduce=several_contacts.reduce,
+        table=several_contacts.score_table,
+        long=True,
+    ),
+    Figure(
+        "several_contacts_arm",
+        "Contacts of an arm at the same time.",
+        (*STUDY, "several_contacts", "--json"),
+        "Twenty trials for each number of contacts, seed 0.",
+        "docs/several_contacts.md",
+        reduce=several_contacts.reduce,
+        table=several_contacts.score_table,
         long=True,
     ),
     Figure(
