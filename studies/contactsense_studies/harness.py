@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from dataclasses import fields
 from importlib import import_module
 from pathlib import Path
+from types import GenericAlias
 from typing import Annotated, Any, TypeAlias, get_args, get_type_hints
 
 import numpy as np
@@ -94,8 +95,9 @@ def add_study(app: typer.Typer, name: str, text: str, options: Any) -> None:
     for field in fields(options):
         kind, option = get_args(get_type_hints(options, include_extras=True)[field.name])
         own[field.name] = (Annotated[kind, option], field.default)
-        if field.default == ():  # Typer knows no tuple of any length
-            own[field.name] = (Annotated[list[str] | None, option], None)
+        if get_args(kind)[1:] == (...,):  # Typer knows no tuple of any length
+            several: Any = GenericAlias(list, get_args(kind)[:1])
+            own[field.name] = (Annotated[several | None, option], None)
     command.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
         [
             inspect.Parameter(key, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)

@@ -49,8 +49,8 @@ pub(super) trait Population: std::fmt::Debug + Send + Sync {
     /// How many contacts each has.
     fn contacts(&self) -> usize;
 
-    /// Forgets which contact is which: others begin.
-    fn forget_order(&mut self);
+    /// Contacts begin, or others than `before`: the first of those that are there again come in that order (world frame).
+    fn begin(&mut self, before: &[Vector3<f64>]);
 
     /// Takes the newest measurement into all hypotheses, spread `anew` over the surface or as they are, and moves them.
     fn update(
@@ -111,7 +111,7 @@ impl<const N: usize> Hypotheses<N> {
         let first = path.make([path.claim(scene.models[0], 0, 0.0); N], None);
         let first =
             first.ok_or_else(|| Error::input("robot", "has no surface where anything could touch it"))?;
-        Ok(Hypotheses { samples: Samples::new(count, first)?, log_evidence: 0.0, orders: Orders::default() })
+        Ok(Hypotheses { samples: Samples::new(count, first)?, log_evidence: 0.0, orders: Orders::after(&[]) })
     }
 }
 
@@ -127,8 +127,8 @@ impl<const N: usize> Population for Hypotheses<N> {
         N
     }
 
-    fn forget_order(&mut self) {
-        self.orders = Orders::default();
+    fn begin(&mut self, before: &[Vector3<f64>]) {
+        self.orders = Orders::after(before);
     }
 
     fn update(

@@ -3,6 +3,8 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
 
+use nalgebra::Vector3;
+
 use super::hypothesis::ContactModel;
 use super::measurements::Measurements;
 use super::options::SamplerOptions;
@@ -281,6 +283,7 @@ impl StaticObstacleSampler {
                 self.take_in(false, kept);
                 // One more contact, or one less: what is known of the others no longer tells what is measured.
                 if self.populations.len() > 1 && self.surprised(before) {
+                    self.begin();
                     self.take_in(true, kept);
                     Event::Changed
                 } else {
@@ -288,12 +291,25 @@ impl StaticObstacleSampler {
                 }
             }
             _ => {
-                self.populations.iter_mut().for_each(|population| population.forget_order());
+                self.found.clear(event);
+                self.begin();
                 self.take_in(true, kept);
                 Event::Started
             }
         };
         self.say(event);
+    }
+
+    /// Contacts begin beside those of the last estimate, or in their place.
+    fn begin(&mut self) {
+        let FilterEstimate { estimate, others, .. } = &self.found;
+        let (mut before, mut count) = ([Vector3::zeros(); MOST_CONTACTS], 0);
+        for contact in
+            std::iter::once(estimate).chain(others).filter_map(|estimate| estimate.contact.as_ref())
+        {
+            (before[count], count) = (contact.point, count + 1);
+        }
+        self.populations.iter_mut().for_each(|population| population.begin(&before[..count]));
     }
 
     /// Whether all hypotheses leave more of the newest torques over than noise does, though they explained those before.
