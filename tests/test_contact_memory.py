@@ -77,6 +77,37 @@ def test_a_wall_touched_often_is_found():
     assert (upper[:, 0] <= 0.66 + 1e-9).all()
 
 
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_an_arm_that_comes_up_to_a_ball_and_leans_on_it_knows_where_it_is(seed):
+    # From noisy torques alone: the sampler locates the contact, the memory fuses it with the way to it.
+    sim = pytest.importorskip("contactsense.sim", reason="the simulation needs contactsense[sim]")
+    link, radii = "iiwa_link_6", (0.06, 0.1)
+    scene = sim.touch_scene(IIWA, link, least_torque=1.0, radius_range=radii, force_range=(10, 30), seed=seed)
+    path = sim.joint_exploration(IIWA, scene, pace=sim.Pace(motions=20, duration=0.2), seed=seed)
+    run = sim.record_quasi_static(IIWA, scene.contact(IIWA), path.time, path.q)
+    noise = sim.TorqueNoise(percent=3.0, newton_metres=0.02, seed=seed)
+    sampler = cs.StaticObstacleSampler(IIWA, particles=2000, seed=seed)
+    for q, torque in zip(run.q[::5], run.external_torque[::5], strict=True):
+        estimate = sampler.update(q, noise.measure(torque))
+    memory = cs.ContactMemory(IIWA, resolution=0.03, prior=0.05)
+    jacobian = IIWA.jacobian(scene.q, link, scene.point)[:3]
+    back = np.linalg.pinv(jacobian) @ (-0.1 * scene.normal)
+    way = np.linspace(scene.q + back, scene.q + 0.1 * back, 8)
+    memory.add_free(way)
+    memory.add_contact(estimate)
+    centre, radius = scene.obstacle.center, scene.obstacle.radius
+    point = run.point[::5][-1]
+    inside = point + 0.015 * (centre - point) / np.linalg.norm(centre - point)
+    assert memory.probability([inside])[0] > 0.4
+    centres, probabilities = memory.points()
+    occupied = centres[probabilities > 0.3]
+    assert len(occupied) > 0
+    assert (np.linalg.norm(occupied - centre, axis=1) < radius + 0.03).all()
+    # Where the link was before is free, as far as it is not the ball's.
+    free = centres[memory.is_free(centres)]
+    assert (np.linalg.norm(free - centre, axis=1) > radius - 0.03).mean() > 0.99
+
+
 def test_the_obstacle_is_on_the_outer_side():
     memory = cs.ContactMemory(IIWA, resolution=0.02)
     memory.add_contact(([0.51, 0.01, 0.5], [0.0, 0.0, -1.0], np.zeros((3, 3))))

@@ -161,6 +161,7 @@ impl PyContactMemory {
     /// Args:
     ///     contact: A `ContactEstimate` or `MapEstimate`, a `Contact` of a report, or a tuple `(point, normal, covariance)` of
     ///         `(3,)` [m], `(3,)` outward, and `(3, 3)` [m^2], world frame. Modes share the evidence by their probabilities.
+    ///         An estimate stands for the first of its `contacts`: of several, add each.
     ///
     /// Raises:
     ///     InputError: Names the argument, or `max_voxels` where more would be known; the memory is unchanged.
