@@ -2231,7 +2231,7 @@ class StaticObstacleSampler:
     def number_probabilities(self) -> NDArray[np.float64]:
         """Probability that there are one, two, ... contacts, `(max_contacts,)`; all zero without a contact. A new array at every access.
 
-        Each number is as probable as the others beforehand.
+        Beforehand, each further contact is a thousand times less probable than none: one that turns no joint is not told.
         """
     @property
     def log_evidence(self) -> float:
@@ -3006,6 +3006,7 @@ class ContactMemory:
         Args:
             contact: A `ContactEstimate` or `MapEstimate`, a `Contact` of a report, or a tuple `(point, normal, covariance)` of
                 `(3,)` [m], `(3,)` outward, and `(3, 3)` [m^2], world frame. Modes share the evidence by their probabilities.
+                An estimate stands for the first of its `contacts`: of several, add each.
 
         Raises:
             InputError: Names the argument, or `max_voxels` where more would be known; the memory is unchanged.

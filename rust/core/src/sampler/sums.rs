@@ -8,6 +8,8 @@ use crate::torque::{NormalFit, SeveralPushes};
 
 /// Force and stiffness are not told apart where the determinant of their precision is this share of the product of its diagonal.
 const SINGULAR: f64 = 1e-12;
+/// Torques of so many standard deviations over the whole range of a number are not felt.
+const UNFELT: f64 = 1e-3;
 /// Contacts at most, and so twice as many numbers.
 pub(crate) const MOST_CONTACTS: usize = 4;
 const MOST_NUMBERS: usize = 2 * MOST_CONTACTS;
@@ -125,13 +127,15 @@ impl<const N: usize> Sums<N> {
         others.fold(self.product[contact], |left, other| left - other)
     }
 
-    /// The numbers that explain the torques best while some are held where they are; none where the measurements do not tell them
-    /// apart. Two a contact, one after the other.
+    /// The numbers that explain the torques best while some are held where they are, two a contact.
+    ///
+    /// # Errors
+    /// One that the measurements do not tell from those before it.
     fn best_of_free(
         &self,
         numbers: &[f64; MOST_NUMBERS],
         held: &[bool; MOST_NUMBERS],
-    ) -> Option<[f64; MOST_NUMBERS]> {
+    ) -> std::result::Result<[f64; MOST_NUMBERS], usize> {
         let gain = |a: usize, b: usize| self.gain[a / 2][b / 2][(a % 2, b % 2)];
         let mut order = [0; MOST_NUMBERS];
         let mut free = 0;
@@ -154,7 +158,7 @@ impl<const N: usize> Sums<N> {
         for i in 0..free {
             let pivot = rows[i][i];
             if pivot.is_nan() || pivot <= SINGULAR * gain(order[i], order[i]) {
-                return None;
+                return Err(order[i]);
             }
             for below in i + 1..free {
                 let share = rows[i][below] / pivot;
@@ -169,7 +173,7 @@ impl<const N: usize> Sums<N> {
             let later: f64 = (i + 1..free).map(|j| rows[i][j] * found[order[j]]).sum();
             found[order[i]] = (rows[i][MOST_NUMBERS] - later) / rows[i][i];
         }
-        Some(found)
+        Ok(found)
     }
 
     /// Half of what the misfit grows by a number.
@@ -306,7 +310,19 @@ impl Prior {
         let range = |a: usize| if a % 2 == 0 { self.force } else { self.stiffness };
         let (mut numbers, mut held) = ([0.0; MOST_NUMBERS], [false; MOST_NUMBERS]);
         for _ in 0..ROUNDS * N {
-            numbers = sums.best_of_free(&numbers, &held)?;
+            match sums.best_of_free(&numbers, &held) {
+                Ok(found) => numbers = found,
+                Err(open) => {
+                    let [low, high] = range(open);
+                    let felt = sums.gain[open / 2][open / 2][(open % 2, open % 2)] * (high - low).powi(2);
+                    if felt > UNFELT * UNFELT {
+                        return None;
+                    }
+                    // Where nothing shows it, the middle of the range.
+                    (numbers[open], held[open]) = ((low * high).sqrt(), true);
+                    continue;
+                }
+            }
             let mut outside = false;
             for a in 0..2 * N {
                 let [low, high] = range(a);
@@ -322,8 +338,8 @@ impl Prior {
                 let ([low, high], slope) = (range(a), sums.slope(&numbers, a));
                 (high - low) * if numbers[a] <= low { -slope } else { slope }
             };
-            let most =
-                (0..2 * N).filter(|a| held[*a]).map(|a| (a, pull(a))).max_by(|a, b| a.1.total_cmp(&b.1));
+            let at_end = |a: &usize| held[*a] && range(*a).contains(&numbers[*a]);
+            let most = (0..2 * N).filter(at_end).map(|a| (a, pull(a))).max_by(|a, b| a.1.total_cmp(&b.1));
             match most {
                 Some((a, pull)) if pull > SETTLED * sums.target => held[a] = false,
                 _ => return Some(std::array::from_fn(|i| Vector2::new(numbers[2 * i], numbers[2 * i + 1]))),
