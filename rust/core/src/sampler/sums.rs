@@ -1,5 +1,8 @@
 //! What measurements say of the forces at the first touch and the stiffnesses of contacts, and of the contacts with these integrated out.
 
+// Rows and columns of matrices: the equations are written with their numbers.
+#![allow(clippy::needless_range_loop)]
+
 use std::f64::consts::TAU;
 
 use nalgebra::{Matrix2, Vector2};
@@ -307,7 +310,7 @@ impl Prior {
 
     /// By holding numbers at the ends of their ranges (an active-set method); none where it does not end soon.
     fn with_some_held<const N: usize>(&self, sums: &Sums<N>) -> Option<[Vector2<f64>; N]> {
-        let range = |a: usize| if a % 2 == 0 { self.force } else { self.stiffness };
+        let range = |a: usize| if a.is_multiple_of(2) { self.force } else { self.stiffness };
         let (mut numbers, mut held) = ([0.0; MOST_NUMBERS], [false; MOST_NUMBERS]);
         for _ in 0..ROUNDS * N {
             match sums.best_of_free(&numbers, &held) {

@@ -1,5 +1,8 @@
 //! Where the contacts of a hypothesis are at one pose, and what its torques say of them.
 
+// Rows and columns of matrices: the equations are written with their numbers.
+#![allow(clippy::needless_range_loop)]
+
 use nalgebra::{Matrix2, Vector2, Vector3};
 
 use super::hypothesis::{Claim, Contact, ContactModel, Forces, Touch};

@@ -1,5 +1,8 @@
 //! What the normal forces of several contacts do to the rows of one measurement, with the forces across the normals integrated out.
 
+// Rows and columns of matrices: the equations are written with their numbers.
+#![allow(clippy::needless_range_loop)]
+
 use super::fit::NormalFit;
 
 /// Directions of a force: along the inward normal, and two across it.
