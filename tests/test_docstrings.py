@@ -24,6 +24,8 @@ UNITLESS = {
     "rank",
     "detectable",
     "weight",
+    "contact",
+    "number_probabilities",
     "directions",
     "relative",
     "hysteresis",
