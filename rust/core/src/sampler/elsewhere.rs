@@ -30,10 +30,7 @@ impl<const N: usize> ContactPath<'_, N> {
         let measurement = self.measurements.all().nth(pose)?;
         let counts = measurement.before + share * (measurement.now - measurement.before);
         let scale = 1.0 + TOLERANCE * TOLERANCE * measurement.target.squared / measurement.rows.max(1.0);
-        let mut touches = sample.contacts.map(|contact| contact.touch);
-        for (contact, touch) in sample.contacts.iter().zip(&mut touches) {
-            *touch = self.place(contact, measurement).0;
-        }
+        let touches = sample.contacts.map(|contact| self.place(&contact, measurement).0);
         let links = sample.contacts.map(|contact| contact.claim.link);
         let bare = self.normals(&links, &touches, measurement);
         let claimed = sample.contacts[contact].claim;

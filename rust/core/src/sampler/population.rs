@@ -129,6 +129,7 @@ impl<const N: usize> Population for Hypotheses<N> {
 
     fn begin(&mut self, before: &[Vector3<f64>]) {
         self.orders = Orders::after(before);
+        self.log_evidence = 0.0;
     }
 
     fn update(
@@ -143,7 +144,6 @@ impl<const N: usize> Population for Hypotheses<N> {
         let count = self.samples.all.len();
         if anew {
             self.samples.restart();
-            self.log_evidence = 0.0;
         }
         let work = |start: usize, hypotheses: &mut [Hypothesis<N>]| {
             for (k, hypothesis) in hypotheses.iter_mut().enumerate() {

@@ -203,10 +203,7 @@ impl StaticObstacleSampler {
         self.found.clear(Event::None);
         (self.found.updates, self.time, self.likely) = (0, None, 0);
         self.numbers.fill(0.0);
-        for population in &mut self.populations {
-            let log = population.log_evidence();
-            population.add_log_evidence(-log);
-        }
+        self.begin();
         self.found.torque.clear();
     }
 
@@ -277,27 +274,25 @@ impl StaticObstacleSampler {
     }
 
     fn follow(&mut self, event: Event, kept: f64) {
-        let event = match event {
+        let (event, weighed) = match event {
             Event::Continued => {
                 let before = self.population().misfit();
-                self.take_in(false, kept);
+                let weighed = self.take_in(false, kept);
                 // One more contact, or one less: what is known of the others no longer tells what is measured.
                 if self.populations.len() > 1 && self.surprised(before) {
                     self.begin();
-                    self.take_in(true, kept);
-                    Event::Changed
+                    (Event::Changed, self.take_in(true, kept))
                 } else {
-                    Event::Continued
+                    (Event::Continued, weighed)
                 }
             }
             _ => {
                 self.found.clear(event);
                 self.begin();
-                self.take_in(true, kept);
-                Event::Started
+                (Event::Started, self.take_in(true, kept))
             }
         };
-        self.say(event);
+        self.say(event, weighed);
     }
 
     /// Contacts begin beside those of the last estimate, or in their place.
@@ -322,8 +317,8 @@ impl StaticObstacleSampler {
         poses > LEAST_POSES && self.found.explained && now - before > noise * limit
     }
 
-    /// Takes the newest measurement in, `anew` without those before.
-    fn take_in(&mut self, anew: bool, kept: f64) {
+    /// Takes the newest measurement in, `anew` without those before; effective samples and log-evidence of the most probable number.
+    fn take_in(&mut self, anew: bool, kept: f64) -> (f64, f64) {
         if anew {
             self.measurements.clear();
             self.followed.fill(true);
@@ -358,17 +353,17 @@ impl StaticObstacleSampler {
             .scattered()
             .map(|measurement| 0.5 * (measurement.now - measurement.before) * measurement.target.squared)
             .sum();
-        let mut said = [(0.0, 0.0); MOST_CONTACTS];
+        let mut weighed = [(0.0, 0.0); MOST_CONTACTS];
         pool.install(|| {
             for (k, population) in populations.iter_mut().enumerate().filter(|(k, _)| followed[*k]) {
                 let course = Course { threads, stop };
                 let travelled = population.update(scene, anew, tempering, random.fork(k as u64), course);
-                said[k] = (travelled.effective, travelled.log_evidence + without);
-                population.add_log_evidence(said[k].1);
+                weighed[k] = (travelled.effective, travelled.log_evidence + without);
+                population.add_log_evidence(weighed[k].1);
             }
         });
         self.choose();
-        (self.found.effective_samples, self.found.log_evidence) = said[self.likely];
+        weighed[self.likely]
     }
 
     /// How probable each number of contacts is.
@@ -394,12 +389,11 @@ impl StaticObstacleSampler {
             .unwrap_or(0);
     }
 
-    fn say(&mut self, event: Event) {
+    fn say(&mut self, event: Event, (effective, log_evidence): (f64, f64)) {
         let Self { robot, instant, populations, numbers, likely, clusters, found, measurements, .. } = self;
         let population = &populations[*likely];
-        let told = (found.effective_samples, found.log_evidence);
         found.clear(event);
-        (found.effective_samples, found.log_evidence) = told;
+        (found.effective_samples, found.log_evidence) = (effective, log_evidence);
         for contact in 0..population.contacts() {
             population.find(contact, clusters, robot, &instant.frames);
             let estimate = match contact {
