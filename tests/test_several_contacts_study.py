@@ -58,6 +58,9 @@ def test_one_contact_is_not_taken_for_two(arm: cs.Robot) -> None:
     assert sampler.number_probabilities[0] > 0.9
     assert len(sampler.estimate.contacts) == 1
     assert judge_several(sampler.estimate, run, -1).links_right
+    # Let go.
+    assert not sampler.update(run.q[-1], np.zeros(7)).contacts
+    assert not sampler.number_probabilities.any()
 
 
 def test_two_contacts_on_a_humanoid() -> None:

@@ -158,7 +158,10 @@ impl StaticObstacleSampler {
             (true, true) => Event::Continued,
         };
         match event {
-            Event::None | Event::Lost => self.found.clear(event),
+            Event::None | Event::Lost => {
+                self.found.clear(event);
+                self.numbers.fill(0.0);
+            }
             _ => self.follow(event, kept),
         }
         self.found.updates += 1;
