@@ -13,11 +13,11 @@ use crate::arguments::{sole, whole, Number};
 use crate::arrays::Vector;
 use crate::calibration::noise_of;
 use crate::errors::to_python;
-use crate::estimate::{PyContactEstimate, ATTRIBUTES};
+use crate::estimate::PyContactEstimate;
 use crate::identifiability::PyIdentifiability;
 use crate::names::Names;
 use crate::once::Once;
-use crate::pickle::{plain_dict, reduced, Reduced};
+use crate::pickle::{reduced, Reduced};
 use crate::returned::{from_rows, numbers, read_only};
 use crate::robot::PyRobot;
 use crate::robot_argument::robot;
@@ -251,10 +251,13 @@ impl PyMapEstimate {
     /// All attributes by name.
     ///
     /// Returns:
-    ///     Plain Python values: numbers, strings, lists in place of arrays and tuples, and dicts in place of modes.
+    ///     Plain Python values: numbers, strings, lists in place of arrays and tuples, and dicts in place of modes and of
+    ///     `contacts`.
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        let own = ["points", "log_posterior", "log_evidence", "region_radius"];
-        plain_dict(slf.as_any(), &[&ATTRIBUTES[..], &own[..]].concat())
+        PyContactEstimate::plain(
+            slf.as_super(),
+            &["points", "log_posterior", "log_evidence", "region_radius"],
+        )
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {

@@ -124,7 +124,7 @@ pub fn matrix<'py, const N: usize>(
     Ok(read_only(from_rows(py, (0..N).map(|i| std::array::from_fn::<_, N, _>(|k| m[(i, k)])))?))
 }
 
-pub const ATTRIBUTES: [&str; 16] = [
+const ATTRIBUTES: [&str; 16] = [
     "contact",
     "event",
     "link",
@@ -176,6 +176,14 @@ impl PyContactEstimate {
     pub fn from_content(content: (Names, Vec<LinkIndex>, FilterEstimate, f64)) -> Self {
         let (names, links, found, time) = content;
         Self::new(Arc::new(names), links.into(), found, time)
+    }
+
+    /// All attributes by name, with those of a subclass; of each contact those that all estimates have.
+    pub fn plain<'py>(slf: &Bound<'py, Self>, own: &[&str]) -> PyResult<Bound<'py, PyDict>> {
+        let dict = plain_dict(slf.as_any(), &[&ATTRIBUTES[..], own].concat())?;
+        let each = Self::contacts(slf)?.iter().map(|contact| plain_dict(&contact, &ATTRIBUTES));
+        dict.set_item("contacts", each.collect::<PyResult<Vec<_>>>()?)?;
+        Ok(dict)
     }
 
     fn contact_mode(&self) -> Option<&Mode> {
@@ -336,10 +344,7 @@ impl PyContactEstimate {
     ///     Plain Python values: numbers, strings, lists in place of arrays and tuples, and dicts in place of modes and of
     ///     `contacts`.
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        let dict = plain_dict(slf.as_any(), &ATTRIBUTES)?;
-        let each = Self::contacts(slf)?.iter().map(|contact| plain_dict(&contact, &ATTRIBUTES));
-        dict.set_item("contacts", each.collect::<PyResult<Vec<_>>>()?)?;
-        Ok(dict)
+        Self::plain(slf, &[])
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
