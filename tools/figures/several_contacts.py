@@ -16,13 +16,13 @@ def reduce(raw: Raw) -> Any:
 
 def score_table(result: Any) -> str:
     """A row for each number of contacts."""
-    header = ("contacts", "links", "within 3 cm", "median", "near", "located", "wrong")
+    header = ("contacts", "links", "within 3 cm", "median", "near", "among", "located", "wrong")
     rows = [
         [
             contacts,
             *(f"{100 * score[key]:.0f} %" for key in ("links_right", "close")),
             f"{1e3 * score['median']:.1f} mm",
-            *(f"{100 * score[key]:.0f} %" for key in ("near", "located", "wrong")),
+            *(f"{100 * score[key]:.0f} %" for key in ("near", "among", "located", "wrong")),
         ]
         for contacts, score in result.items()
     ]

@@ -267,7 +267,7 @@ impl PyStaticObstacleSampler {
 
     /// Probability that there are one, two, ... contacts, `(max_contacts,)`; all zero without a contact. A new array at every access.
     ///
-    /// Beforehand, each further contact is a thousand times less probable than none: one that turns no joint is not told.
+    /// Beforehand, each further contact is a million times less probable than none: small errors of the model feign none.
     #[getter]
     fn number_probabilities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         Ok(numbers(py, self.sole(py)?.number_probabilities()))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from .judge import CLOSE, NEAR, PROBABLE, WRONG, score
+from .judge import CLOSE, NEAR, PROBABLE, SPREADS, WRONG, score
 from .study import Study
 
 
@@ -15,7 +15,7 @@ def as_data(study: Study) -> dict[str, Any]:
         "study": "several_contacts",
         "complete": study.complete,
         "options": asdict(study.options),
-        "settings": {"close": CLOSE, "wrong": WRONG, "probable": PROBABLE, "near": NEAR},
+        "settings": {"close": CLOSE, "wrong": WRONG, "probable": PROBABLE, "near": NEAR, "spreads": SPREADS},
         "scores": [
             {"contacts": contacts, **asdict(score(judged))}
             for contacts in study.options.contacts

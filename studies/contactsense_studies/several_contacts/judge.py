@@ -13,8 +13,8 @@ from .runs import SeveralRun
 
 # A point is found within `CLOSE`; one that is said to be known is wrong beyond `WRONG` [m].
 CLOSE, WRONG = 0.03, 0.05
-# A probable place counts as near the truth.
-PROBABLE, NEAR = 0.1, 0.02
+# A probable place counts as near the truth; the truth is among the probable places if it is within so many of the place's spreads.
+PROBABLE, NEAR, SPREADS = 0.1, 0.02, 2.0
 
 
 @dataclass(frozen=True)
@@ -25,6 +25,7 @@ class Judged:
     found: tuple[str, ...]  # as many as were found
     errors: tuple[float, ...]  # of each true contact [m], infinite where none was found for it
     near: tuple[bool, ...]  # a probable place is near, for each true contact
+    among: tuple[bool, ...]  # it is near, or its spread on the true link holds the truth
     located: int  # contacts that are not said to be ambiguous
     wrong: int  # of these, far from every true contact
     probability: float  # of the true number of contacts
@@ -50,14 +51,23 @@ def judge_several(
     order = min(
         permutations(range(size), len(true)), key=lambda order: float(capped[rows, list(order)].sum())
     )
-    places = [mode.point for each in found for mode in each.modes if mode.probability >= PROBABLE]
-    near = [any(float(np.linalg.norm(place - point)) <= NEAR for place in places) for point in true]
+    places = [mode for each in found for mode in each.modes if mode.probability >= PROBABLE]
+    away = [[float(np.linalg.norm(place.point - point)) for place in places] for point in true]
+    near = [any(each <= NEAR for each in row) for row in away]
+    held = [
+        any(
+            each <= SPREADS * place.spread and place.link == link
+            for each, place in zip(row, places, strict=True)
+        )
+        for row, link in zip(away, run.links, strict=True)
+    ]
     sure = [k for k, each in enumerate(found) if not each.ambiguous]
     return Judged(
         links=run.links,
         found=tuple(each.link for each in found),
         errors=tuple(float(padded[k, order[k]]) for k in rows),
         near=tuple(near),
+        among=tuple(one or other for one, other in zip(near, held, strict=True)),
         located=len(sure),
         wrong=sum(bool(distance[:, k].min() > WRONG) for k in sure),
         probability=probability,
@@ -73,6 +83,7 @@ class Score:
     links_right: float  # trials with all links right, and no other contact
     close: float  # contacts whose point is found
     near: float  # trials in which a probable place is near each contact
+    among: float  # trials in which each contact is among the probable places
     median: float  # error of the points [m]
     located: float  # contacts that are said to be known
     wrong: float  # of these, far from every true contact
@@ -89,6 +100,7 @@ def score(judged: list[Judged]) -> Score:
         links_right=mean([each.links_right for each in judged]),
         close=mean([error <= CLOSE for error in errors]),
         near=mean([all(each.near) for each in judged]),
+        among=mean([all(each.among) for each in judged]),
         median=median(errors),
         located=located / len(errors) if errors else np.nan,
         wrong=sum(each.wrong for each in judged) / located if located else np.nan,

@@ -13,7 +13,7 @@ use crate::torque::SeveralPushes;
 
 /// Places that are tried.
 const TRIES: usize = 16;
-/// Torques are explained well enough to lead to a place where so much of them is left over: friction is not looked at.
+/// Torques are explained well enough to lead to a place where so much of them is left over.
 const TOLERANCE: f64 = 0.1;
 
 impl<const N: usize> ContactPath<'_, N> {
@@ -29,7 +29,10 @@ impl<const N: usize> ContactPath<'_, N> {
         let pose = (random.uniform(0) * count as f64) as usize;
         let measurement = self.measurements.all().nth(pose)?;
         let counts = measurement.before + share * (measurement.now - measurement.before);
-        let scale = 1.0 + TOLERANCE * TOLERANCE * measurement.target.squared / measurement.rows.max(1.0);
+        // Friction is not looked at: it may be left over.
+        let friction = self.force_model.deviation_of_sliding(1.0).unwrap_or(0.0);
+        let tolerance = TOLERANCE.hypot(friction);
+        let scale = 1.0 + tolerance * tolerance * measurement.target.squared / measurement.rows.max(1.0);
         let touches = sample.contacts.map(|contact| self.place(&contact, measurement).0);
         let links = sample.contacts.map(|contact| contact.claim.link);
         let bare = self.normals(&links, &touches, measurement);

@@ -29,6 +29,11 @@ impl ContactModel {
     /// All there are.
     pub const ALL: [ContactModel; 3] = [ContactModel::Obstacle, ContactModel::Person, ContactModel::Both];
 
+    /// Whether it is with an obstacle that stays.
+    pub(super) fn stays(self) -> bool {
+        self == ContactModel::Obstacle
+    }
+
     /// In lower case.
     pub fn name(self) -> &'static str {
         match self {

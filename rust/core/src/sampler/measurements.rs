@@ -1,5 +1,7 @@
 //! The torques that were measured of the contacts, at poses that differ.
 
+use nalgebra::Matrix6;
+
 use super::between::Between;
 use crate::particle::{Instant, NEW_POSE};
 use crate::spatial::Pose;
@@ -21,6 +23,17 @@ pub(super) struct Measurement {
     /// How much it counted before the newest one came, and counts now: from zero to one.
     pub before: f64,
     pub now: f64,
+}
+
+impl Measurement {
+    /// Inner products of the torques of unit forces and moments on one link, and on another where there may be several contacts.
+    #[inline]
+    pub fn gram_of(&self, link: usize, other: usize) -> &Matrix6<f64> {
+        match &self.between {
+            Some(between) if link != other => between.of(link, other),
+            _ => &self.links[link].gram(),
+        }
+    }
 }
 
 /// A window of measurements.

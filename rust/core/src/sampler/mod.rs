@@ -9,8 +9,10 @@
 
 mod between;
 mod elsewhere;
+mod friction;
 mod hypothesis;
 mod measurements;
+mod neighbours;
 mod options;
 mod order;
 mod particle;

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::hypothesis::{Claim, Contact, ContactModel, Hypothesis, Touch};
 use super::measurements::{Measurement, Measurements};
+use super::neighbours::Neighbours;
 use super::sums::{Marginal, Prior, Sums};
 use crate::math::random::Stream;
 use crate::particle::tangent;
@@ -27,6 +28,8 @@ const ALONE: [f64; 2] = [0.4, 0.6];
 /// Share of moves that take another model.
 const MODEL_MOVES: f64 = 0.2;
 
+/// Share of moves to a link beside.
+const BESIDE: f64 = 0.1;
 /// Share of moves that place a contact anywhere, of two contacts or more: which links are touched is not known from one of them.
 const ANYWHERE: f64 = 0.3;
 
@@ -37,6 +40,7 @@ pub(super) struct ContactPath<'a, const N: usize> {
     pub models: &'a [ContactModel],
     /// Places of the surface, by area.
     pub places: &'a [(u32, SurfacePoint)],
+    pub neighbours: &'a Neighbours,
     pub prior: Prior,
     pub force_model: ForceModel,
     pub log_radius: [f64; 2],
@@ -68,14 +72,15 @@ impl<const N: usize> ContactPath<'_, N> {
     /// A hypothesis of all measurements; none where it is surely not wanted.
     pub fn make(&self, claims: [Claim; N], wanted: Option<Wanted>) -> Option<Hypothesis<N>> {
         let mut contacts = claims.map(|claim| self.contact(claim));
+        let [forces_before, forces_now] = self.normal_forces(&contacts);
         let (mut before, mut now) = (Sums::NONE, Sums::NONE);
         let mut newest = contacts.map(|contact| contact.touch);
         for (number, measurement) in self.measurements.scattered().enumerate() {
-            let (touches, sums) = self.touch(&contacts, measurement);
+            let (touches, felt) = self.touch(&contacts, measurement);
             contacts.iter_mut().zip(touches).for_each(|(contact, touch)| contact.touch = touch);
             let Measurement { before: share_before, now: share_now, .. } = *measurement;
-            before.add(share_before, &sums);
-            now.add(share_now, &sums);
+            before.add(share_before, &self.sums(&felt, measurement, &forces_before));
+            now.add(share_now, &self.sums(&felt, measurement, &forces_now));
             if number == 0 {
                 newest = touches;
             }
@@ -100,17 +105,30 @@ impl<const N: usize> ContactPath<'_, N> {
 
     /// Takes the newest measurement into a hypothesis that knows those before it.
     pub fn follow(&self, hypothesis: &mut Hypothesis<N>) {
+        let before = hypothesis.marginal.log;
+        if self.sized_by_all(&hypothesis.contacts) {
+            if let Some(made) = self.make(hypothesis.contacts.map(|contact| contact.claim), None) {
+                *hypothesis = made;
+            }
+        } else {
+            self.add_newest(hypothesis);
+        }
+        (hypothesis.marginal, hypothesis.logs) = self.marginal(&hypothesis.now, before);
+    }
+
+    fn add_newest(&self, hypothesis: &mut Hypothesis<N>) {
+        let forces = self.normal_forces(&hypothesis.contacts)[1];
         if let Some(dropped) = self.measurements.dropped() {
             let first =
                 hypothesis.contacts.map(|contact| Contact { touch: Touch::of(&contact.claim), ..contact });
-            let (_, sums) = self.touch(&first, dropped);
-            hypothesis.now.add(-dropped.before, &sums);
+            let (_, felt) = self.touch(&first, dropped);
+            hypothesis.now.add(-dropped.before, &self.sums(&felt, dropped, &forces));
         }
-        let (touches, sums) = self.touch(&hypothesis.contacts, self.measurements.newest());
+        let newest = self.measurements.newest();
+        let (touches, felt) = self.touch(&hypothesis.contacts, newest);
         hypothesis.contacts.iter_mut().zip(touches).for_each(|(contact, touch)| contact.touch = touch);
         hypothesis.now.scale(self.measurements.kept);
-        hypothesis.now.add(1.0, &sums);
-        (hypothesis.marginal, hypothesis.logs) = self.marginal(&hypothesis.now, hypothesis.marginal.log);
+        hypothesis.now.add(1.0, &self.sums(&felt, newest, &forces));
     }
 
     /// `start`: the logarithm of the likelihood before the newest measurement.
@@ -178,13 +196,14 @@ impl<const N: usize> Path for ContactPath<'_, N> {
         let draw = |k: u64| random.uniform(first + k);
         let mut claims = sample.contacts.map(|contact| contact.claim);
         let contact = (draw(30) * N as f64) as usize;
-        let mut log_back = 0.0;
-        if N > 1 && draw(31) < ANYWHERE {
-            (claims[contact], log_back) =
-                self.elsewhere(sample, contact, wanted.share, random.fork(first))?;
-        } else {
-            claims[contact] = self.near(claims[contact], others, random, first)?;
-        }
+        let claim = claims[contact];
+        let anywhere = if N > 1 { ANYWHERE } else { 0.0 };
+        let log_back;
+        (claims[contact], log_back) = match draw(31) {
+            x if x < anywhere => self.elsewhere(sample, contact, wanted.share, random.fork(first))?,
+            x if x < anywhere + BESIDE => self.beside(claim, random.fork(first))?,
+            _ => (self.near(claim, others, random, first)?, 0.0),
+        };
         let sample = self.make(claims, Some(wanted.with_back(log_back)))?;
         Some(Proposal { sample, log_back })
     }

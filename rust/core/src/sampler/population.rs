@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 
 use super::hypothesis::{Contact, ContactModel, Hypothesis, One};
 use super::measurements::Measurements;
+use super::neighbours::Neighbours;
 use super::order::Orders;
 use super::path::ContactPath;
 use super::sums::Prior;
@@ -27,16 +28,18 @@ pub(super) struct Scene<'a> {
     pub options: &'a FilterOptions,
     pub models: &'a [ContactModel],
     pub places: &'a [(u32, SurfacePoint)],
+    pub neighbours: &'a Neighbours,
 }
 
 impl<'a> Scene<'a> {
     pub fn path<const N: usize>(self) -> ContactPath<'a, N> {
-        let Scene { robot, measurements, options, models, places } = self;
+        let Scene { robot, measurements, options, models, places, neighbours } = self;
         ContactPath {
             robot,
             measurements,
             models,
             places,
+            neighbours,
             prior: Prior { force: options.force_range, stiffness: options.stiffness_range },
             force_model: options.force_model,
             log_radius: options.radius_range.map(f64::ln),

@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 
 use super::hypothesis::ContactModel;
 use super::measurements::Measurements;
+use super::neighbours::Neighbours;
 use super::options::SamplerOptions;
 use super::particle::Particle;
 use super::population::{population, Population, Scene};
@@ -35,10 +36,11 @@ const GRANTED: f64 = 3.0;
 const FITTED: usize = 5;
 /// Poses that tell an obstacle that stays from what is none.
 const LEAST_POSES: usize = 4;
-/// How probable one more contact is beforehand, as a share: a contact that turns no joint can be anywhere, and is not looked for.
-const ONE_MORE: f64 = 1e-3;
+/// How probable one more contact is beforehand, as a share. A contact that is there soon shows by hundreds of nats; what friction and
+/// curvature do beside the model can feign some.
+const ONE_MORE: f64 = 1e-6;
 /// A number of contacts that is less probable is followed no longer.
-const DROPPED: f64 = 1e-9;
+const DROPPED: f64 = 1e-12;
 /// A number of contacts that is less probable is not sure.
 const SURE_NUMBER: f64 = 0.8;
 
@@ -81,6 +83,7 @@ pub struct StaticObstacleSampler {
     instant: Instant,
     measurements: Measurements,
     places: Vec<(u32, SurfacePoint)>,
+    neighbours: Neighbours,
     /// Of one contact, two and so on, and which of these are followed.
     populations: Vec<Box<dyn Population>>,
     followed: Vec<bool>,
@@ -103,6 +106,7 @@ impl StaticObstacleSampler {
         let (places, _) = exposed_places(&robot, &wanted, &filter)?;
         let most = options.max_contacts;
         let found = FilterEstimate::of_several(wanted.len(), MOST_MODES, most);
+        let neighbours = Neighbours::new(&robot, &wanted);
         let instant = Instant::new(&robot, noise, wanted);
         let measurements = Measurements::new(&instant, options.window, most > 1);
         let scene = Scene {
@@ -111,6 +115,7 @@ impl StaticObstacleSampler {
             options: &filter,
             models: &options.models,
             places: &places,
+            neighbours: &neighbours,
         };
         let populations = (1..=most)
             .map(|contacts| population(contacts, options.particles, scene))
@@ -133,6 +138,7 @@ impl StaticObstacleSampler {
             instant,
             measurements,
             places,
+            neighbours,
             found,
             robot,
         })
@@ -339,11 +345,12 @@ impl StaticObstacleSampler {
             stop,
             pool,
             places,
+            neighbours,
             found,
             ..
         } = self;
         let random = Stream::new(options.seed).fork(found.updates);
-        let scene = Scene { robot, measurements, options, models, places };
+        let scene = Scene { robot, measurements, options, models, places, neighbours };
         let threads = options.threads;
         // The less poses there are, the less work is a move.
         let most_moves = *moves * *window / measurements.len().max(1);

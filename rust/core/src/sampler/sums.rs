@@ -287,7 +287,7 @@ impl Prior {
 
     /// The forces and stiffnesses within their ranges that explain the torques best: by holding some at
     /// the ends, or by sweeps over the contacts.
-    fn best<const N: usize>(&self, sums: &Sums<N>) -> [Vector2<f64>; N] {
+    pub fn best<const N: usize>(&self, sums: &Sums<N>) -> [Vector2<f64>; N] {
         if N > 1 {
             if let Some(found) = self.with_some_held(sums) {
                 return found;
@@ -406,6 +406,11 @@ mod tests {
 
     const PRIOR: Prior = Prior { force: [1.0, 100.0], stiffness: [3e2, 3e4] };
 
+    fn one(fit: &NormalFit) -> SeveralPushes<1> {
+        let NormalFit { gain, product, target, penalty } = *fit;
+        SeveralPushes { gain: [[gain]], product: [product], target, penalty }
+    }
+
     fn measured(force: f64, stiffness: f64) -> Sums<1> {
         let mut sums = Sums::NONE;
         for k in 0..12 {
@@ -417,7 +422,7 @@ mod tests {
                 target: gain * torque * torque + 2.0,
                 penalty: 0.0,
             };
-            sums.add(1.0, &Sums::along(&SeveralPushes::of_one(&fit), &[deeper]));
+            sums.add(1.0, &Sums::along(&one(&fit), &[deeper]));
         }
         sums
     }
@@ -450,9 +455,9 @@ mod tests {
         let fit = NormalFit { gain: 3.0, product: 2.0, target: 7.0, penalty: 0.1 };
         let mut sums = measured(10.0, 1000.0);
         let before = PRIOR.integrate(&sums);
-        sums.add(1.0, &Sums::along(&SeveralPushes::of_one(&fit), &[1e-3]));
+        sums.add(1.0, &Sums::along(&one(&fit), &[1e-3]));
         assert!(PRIOR.integrate(&sums).log < before.log);
-        sums.add(-1.0, &Sums::along(&SeveralPushes::of_one(&fit), &[1e-3]));
+        sums.add(-1.0, &Sums::along(&one(&fit), &[1e-3]));
         assert!((PRIOR.integrate(&sums).log - before.log).abs() < 1e-9);
         assert_eq!(PRIOR.integrate(&Sums::<1>::NONE).log, 0.0);
     }

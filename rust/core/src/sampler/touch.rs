@@ -5,25 +5,27 @@
 
 use nalgebra::{Matrix2, Vector2, Vector3};
 
+use super::friction::Felt;
 use super::hypothesis::{Claim, Contact, ContactModel, Forces, Touch};
 use super::measurements::Measurement;
 use super::path::ContactPath;
 use super::sums::Sums;
 use crate::particle::signed;
 use crate::spatial::vector::stack;
-use crate::torque::{directions, AllDirections, ForceModel, NormalFit, SeveralPushes};
+use crate::torque::{directions, AllDirections, ForceModel, NormalFit};
 
 impl<const N: usize> ContactPath<'_, N> {
-    /// Contacts at one pose, found from where they were last, and the sums of its torques.
-    pub(super) fn touch(&self, contacts: &[Contact; N], measurement: &Measurement) -> ([Touch; N], Sums<N>) {
+    /// Contacts at one pose, found from where they were last, and what its torques say of them.
+    pub(super) fn touch(&self, contacts: &[Contact; N], measurement: &Measurement) -> ([Touch; N], Felt<N>) {
         let mut touches = contacts.map(|contact| Touch { forces: Forces::default(), ..contact.touch });
-        let mut sums = match contacts[0].claim.model {
+        let felt = match contacts[0].claim.model {
             ContactModel::Obstacle => self.obstacles(contacts, measurement, &mut touches),
-            ContactModel::Person => self.person(&contacts[0].claim, measurement, &mut touches[0]),
-            ContactModel::Both => self.both(&contacts[0], measurement, &mut touches[0]),
+            ContactModel::Person => {
+                Felt::Known(self.person(&contacts[0].claim, measurement, &mut touches[0]))
+            }
+            ContactModel::Both => Felt::Known(self.both(&contacts[0], measurement, &mut touches[0])),
         };
-        sums.rows = measurement.rows;
-        (touches, sums)
+        (touches, felt)
     }
 
     fn obstacles(
@@ -31,17 +33,21 @@ impl<const N: usize> ContactPath<'_, N> {
         contacts: &[Contact; N],
         measurement: &Measurement,
         touches: &mut [Touch; N],
-    ) -> Sums<N> {
+    ) -> Felt<N> {
         let mut deeper = [0.0; N];
         for ((contact, touch), deeper) in contacts.iter().zip(touches.iter_mut()).zip(&mut deeper) {
             (*touch, *deeper) = self.place(contact, measurement);
         }
-        let pushes = if N == 1 {
-            SeveralPushes::of_one(&self.fit(&contacts[0].claim, measurement, &touches[0]))
-        } else {
-            self.pushes(contacts, measurement, touches)
-        };
-        Sums::along(&pushes, &deeper)
+        let links = contacts.map(|contact| contact.claim.link);
+        match self.force_model {
+            ForceModel::Normal => {
+                let pushes = self.forces_in::<1>(&links, measurement, touches).bare();
+                Felt::Known(Sums::along(&pushes, &deeper))
+            }
+            ForceModel::FrictionCone(_) => {
+                Felt::WithFriction(self.forces_in::<3>(&links, measurement, touches), deeper)
+            }
+        }
     }
 
     /// Where an obstacle touches, and how much deeper than at the first touch (m).
@@ -77,7 +83,7 @@ impl<const N: usize> ContactPath<'_, N> {
         Sums::of_two(gain, Vector2::new(products[0], products[1]), measurement.target.squared)
     }
 
-    /// Of a single contact.
+    /// Of a force that is not tied to others.
     fn fit(&self, claim: &Claim, measurement: &Measurement, touch: &Touch) -> NormalFit {
         let link = claim.link as usize;
         let (frame, target) = (&measurement.links[link], measurement.target.on(link));
@@ -93,14 +99,13 @@ impl<const N: usize> ContactPath<'_, N> {
         }
     }
 
-    /// Of several.
-    fn pushes(
+    /// Inner products of the torques of unit forces in the first `USED` directions: along the normals, and across them.
+    fn forces_in<const USED: usize>(
         &self,
-        contacts: &[Contact; N],
+        links: &[u32; N],
         measurement: &Measurement,
         touches: &[Touch; N],
-    ) -> SeveralPushes<N> {
-        let Some(between) = &measurement.between else { return SeveralPushes::NONE };
+    ) -> AllDirections<N> {
         let wrenches = touches
             .map(|touch| directions(&touch.normal).map(|force| stack(&force, &touch.point.cross(&force))));
         let mut all = AllDirections {
@@ -108,18 +113,16 @@ impl<const N: usize> ContactPath<'_, N> {
             product: [[0.0; 3]; N],
             target: measurement.target.squared,
         };
-        // Across the normals only where there is friction.
-        let used = if self.force_model == ForceModel::Normal { 1 } else { 3 };
         for i in 0..N {
-            let link = contacts[i].claim.link as usize;
-            for a in 0..used {
+            let link = links[i] as usize;
+            for a in 0..USED {
                 all.product[i][a] = wrenches[i][a].dot(&measurement.target.on(link).product);
             }
             for j in i..N {
-                let between = between.of(link, contacts[j].claim.link as usize);
-                for b in 0..used {
+                let between = measurement.gram_of(link, links[j] as usize);
+                for b in 0..USED {
                     let felt = between * wrenches[j][b];
-                    for a in 0..used {
+                    for a in 0..USED {
                         let inner = wrenches[i][a].dot(&felt);
                         all.gram[i][j][a][b] = inner;
                         all.gram[j][i][b][a] = inner;
@@ -127,11 +130,6 @@ impl<const N: usize> ContactPath<'_, N> {
                 }
             }
         }
-        let bare = all.bare();
-        if used == 1 {
-            return bare;
-        }
-        let forces = bare.forces(self.prior.force);
-        all.without_friction(forces.map(|force| self.force_model.deviation_across(force)))
+        all
     }
 }

@@ -1,5 +1,7 @@
 //! Which forces a contact can exert.
 
+use std::f64::consts::SQRT_2;
+
 use nalgebra::Vector3;
 
 use crate::error::{Error, Result};
@@ -64,6 +66,12 @@ impl ForceModel {
             }
             _ => None,
         }
+    }
+
+    /// The same of a contact that slides: friction is then all that the cone allows, in an unknown direction.
+    #[inline]
+    pub(crate) fn deviation_of_sliding(&self, normal_force: f64) -> Option<f64> {
+        self.deviation_across(normal_force).map(|within| within * SQRT_2)
     }
 }
 

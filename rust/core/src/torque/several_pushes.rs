@@ -3,14 +3,12 @@
 // Rows and columns of matrices: the equations are written with their numbers.
 #![allow(clippy::needless_range_loop)]
 
-use super::fit::NormalFit;
-
 /// Directions of a force: along the inward normal, and two across it.
 const DIRECTIONS: usize = 3;
 /// Sweeps over the contacts for their forces at one pose: they are needed only for how large friction can be.
 const SWEEPS: usize = 8;
 
-/// As [`NormalFit`], of several contacts at once.
+/// Normal equations of the forces along the normals, of one contact or several.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SeveralPushes<const N: usize> {
     /// Inner products of the torques of unit forces [1/N^2].
@@ -27,13 +25,6 @@ impl<const N: usize> SeveralPushes<N> {
     /// No rows.
     pub const NONE: Self =
         SeveralPushes { gain: [[0.0; N]; N], product: [0.0; N], target: 0.0, penalty: 0.0 };
-
-    /// Of a single contact, the first.
-    pub fn of_one(fit: &NormalFit) -> Self {
-        let mut pushes = SeveralPushes { target: fit.target, penalty: fit.penalty, ..Self::NONE };
-        (pushes.gain[0][0], pushes.product[0]) = (fit.gain, fit.product);
-        pushes
-    }
 
     /// The squared torques that forces leave over.
     pub fn misfit(&self, forces: &[f64; N]) -> f64 {
