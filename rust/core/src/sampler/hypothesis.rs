@@ -29,11 +29,6 @@ impl ContactModel {
     /// All there are.
     pub const ALL: [ContactModel; 3] = [ContactModel::Obstacle, ContactModel::Person, ContactModel::Both];
 
-    /// Whether it is with an obstacle that stays.
-    pub(super) fn stays(self) -> bool {
-        self == ContactModel::Obstacle
-    }
-
     /// In lower case.
     pub fn name(self) -> &'static str {
         match self {
@@ -99,6 +94,8 @@ pub(super) struct Hypothesis<const N: usize> {
     /// Of the measurements that count now.
     pub now: Sums<N>,
     pub logs: Logs,
+    /// The densities with friction of the greatest forces, where it is in proportion to forces.
+    pub rough: Option<Logs>,
     pub marginal: Marginal<N>,
 }
 

@@ -2,10 +2,11 @@
 
 use nalgebra::Vector3;
 
+use super::friction::NormalForces;
 use super::hypothesis::{Claim, Contact, ContactModel, Hypothesis, Touch};
-use super::measurements::{Measurement, Measurements};
+use super::measurements::Measurements;
 use super::neighbours::Neighbours;
-use super::sums::{Marginal, Prior, Sums};
+use super::sums::{Prior, Sums};
 use crate::math::random::Stream;
 use crate::particle::tangent;
 use crate::posterior::tempering::{Logs, Path, Proposal, Wanted};
@@ -28,6 +29,8 @@ const ALONE: [f64; 2] = [0.4, 0.6];
 /// Share of moves that take another model.
 const MODEL_MOVES: f64 = 0.2;
 
+/// The number of a move's forked stream that decides the first of two stages.
+const DECISION: u64 = 1 << 20;
 /// Share of moves to a link beside.
 const BESIDE: f64 = 0.1;
 /// Share of moves that place a contact anywhere, of two contacts or more: which links are touched is not known from one of them.
@@ -71,33 +74,50 @@ impl<const N: usize> ContactPath<'_, N> {
 
     /// A hypothesis of all measurements; none where it is surely not wanted.
     pub fn make(&self, claims: [Claim; N], wanted: Option<Wanted>) -> Option<Hypothesis<N>> {
-        let mut contacts = claims.map(|claim| self.contact(claim));
-        let [forces_before, forces_now] = self.normal_forces(&contacts);
-        let (mut before, mut now) = (Sums::NONE, Sums::NONE);
+        let contacts = claims.map(|claim| self.contact(claim));
+        if self.sized_by_forces(&contacts) {
+            return self.refine(contacts, &self.rough(contacts, None)?, wanted);
+        }
+        let takes = |sums: &[Sums<N>; 2]| wanted.is_none_or(|wanted| wanted.takes(self.most(sums)));
+        let (contacts, [before, now]) = self.add_up(contacts, &[self.greatest_forces(); 2], takes)?;
+        let marginal = self.prior.integrate(&now);
+        let logs = logs(self.prior.integrate(&before).log, marginal.log);
+        Some(Hypothesis { contacts, now, logs, rough: None, marginal })
+    }
+
+    /// The contacts at the newest pose, and the sums of all measurements as they counted before that came and as they count now, with
+    /// friction as large as normal forces then and now allow; none where what was added up first shows that it is not taken.
+    pub fn add_up(
+        &self,
+        mut contacts: [Contact; N],
+        forces: &[NormalForces<N>; 2],
+        takes: impl Fn(&[Sums<N>; 2]) -> bool,
+    ) -> Option<([Contact; N], [Sums<N>; 2])> {
+        let mut both = [Sums::NONE; 2];
         let mut newest = contacts.map(|contact| contact.touch);
         for (number, measurement) in self.measurements.scattered().enumerate() {
             let (touches, felt) = self.touch(&contacts, measurement);
-            contacts.iter_mut().zip(touches).for_each(|(contact, touch)| contact.touch = touch);
-            let Measurement { before: share_before, now: share_now, .. } = *measurement;
-            before.add(share_before, &self.sums(&felt, measurement, &forces_before));
-            now.add(share_now, &self.sums(&felt, measurement, &forces_now));
+            put(&mut contacts, touches);
+            let counts = [measurement.before, measurement.now];
+            for ((sums, share), forces) in both.iter_mut().zip(counts).zip(forces) {
+                if share > 0.0 {
+                    sums.add(share, &self.sums(&felt, measurement, forces));
+                }
+            }
             if number == 0 {
                 newest = touches;
             }
             // Not each time: to look costs a part of what it saves.
-            let look = (number + 1).is_power_of_two();
-            if wanted.is_some_and(|wanted| look && !wanted.takes(self.most(&before, &now))) {
+            if (number + 1).is_power_of_two() && !takes(&both) {
                 return None;
             }
         }
-        contacts.iter_mut().zip(newest).for_each(|(contact, touch)| contact.touch = touch);
-        let start = self.prior.integrate(&before).log;
-        let (marginal, logs) = self.marginal(&now, start);
-        Some(Hypothesis { contacts, now, logs, marginal })
+        put(&mut contacts, newest);
+        Some((contacts, both))
     }
 
     /// What the densities can be at most, whatever other measurements say.
-    fn most(&self, before: &Sums<N>, now: &Sums<N>) -> Logs {
+    pub fn most(&self, [before, now]: &[Sums<N>; 2]) -> Logs {
         let [rows_before, rows_now] = self.measurements.rows;
         let (start, end) = (self.prior.most(before, rows_before), self.prior.most(now, rows_now));
         Logs { start, added: end - start }
@@ -106,18 +126,19 @@ impl<const N: usize> ContactPath<'_, N> {
     /// Takes the newest measurement into a hypothesis that knows those before it.
     pub fn follow(&self, hypothesis: &mut Hypothesis<N>) {
         let before = hypothesis.marginal.log;
-        if self.sized_by_all(&hypothesis.contacts) {
+        if self.sized_by_forces(&hypothesis.contacts) {
             if let Some(made) = self.make(hypothesis.contacts.map(|contact| contact.claim), None) {
                 *hypothesis = made;
             }
         } else {
             self.add_newest(hypothesis);
+            hypothesis.marginal = self.prior.integrate(&hypothesis.now);
         }
-        (hypothesis.marginal, hypothesis.logs) = self.marginal(&hypothesis.now, before);
+        hypothesis.logs = logs(before, hypothesis.marginal.log);
     }
 
     fn add_newest(&self, hypothesis: &mut Hypothesis<N>) {
-        let forces = self.normal_forces(&hypothesis.contacts)[1];
+        let forces = self.greatest_forces();
         if let Some(dropped) = self.measurements.dropped() {
             let first =
                 hypothesis.contacts.map(|contact| Contact { touch: Touch::of(&contact.claim), ..contact });
@@ -126,18 +147,9 @@ impl<const N: usize> ContactPath<'_, N> {
         }
         let newest = self.measurements.newest();
         let (touches, felt) = self.touch(&hypothesis.contacts, newest);
-        hypothesis.contacts.iter_mut().zip(touches).for_each(|(contact, touch)| contact.touch = touch);
+        put(&mut hypothesis.contacts, touches);
         hypothesis.now.scale(self.measurements.kept);
         hypothesis.now.add(1.0, &self.sums(&felt, newest, &forces));
-    }
-
-    /// `start`: the logarithm of the likelihood before the newest measurement.
-    fn marginal(&self, now: &Sums<N>, start: f64) -> (Marginal<N>, Logs) {
-        let marginal = self.prior.integrate(now);
-        let end = marginal.log;
-        // From a density of zero no way leads back.
-        let added = if start == f64::NEG_INFINITY { 0.0 } else { end - start };
-        (marginal, Logs { start, added })
     }
 
     /// Another claim near one, as likely to be proposed from there as the other way round.
@@ -204,9 +216,26 @@ impl<const N: usize> Path for ContactPath<'_, N> {
             x if x < anywhere + BESIDE => self.beside(claim, random.fork(first))?,
             _ => (self.near(claim, others, random, first)?, 0.0),
         };
-        let sample = self.make(claims, Some(wanted.with_back(log_back)))?;
-        Some(Proposal { sample, log_back })
+        let wanted = wanted.with_back(log_back);
+        let contacts = claims.map(|claim| self.contact(claim));
+        match &sample.rough {
+            Some(rough) if self.sized_by_forces(&contacts) => {
+                self.in_two_stages(rough, contacts, wanted, log_back, random.fork(first).uniform(DECISION))
+            }
+            _ => Some(Proposal { sample: self.make(claims, Some(wanted))?, log_back }),
+        }
     }
+}
+
+/// Densities at the start and at the end of the way.
+pub(super) fn logs(start: f64, end: f64) -> Logs {
+    // From a density of zero no way leads back.
+    Logs { start, added: if start == f64::NEG_INFINITY { 0.0 } else { end - start } }
+}
+
+/// Has contacts touch elsewhere.
+fn put<const N: usize>(contacts: &mut [Contact; N], touches: [Touch; N]) {
+    contacts.iter_mut().zip(touches).for_each(|(contact, touch)| contact.touch = touch);
 }
 
 /// Two contacts of others on a link, by chance.

@@ -237,7 +237,11 @@ impl Prior {
     /// Over all by Laplace's method, with the best forces and stiffnesses within their ranges. The volume is at most that of the
     /// prior: what the torques do not show costs nothing.
     pub fn integrate<const N: usize>(&self, sums: &Sums<N>) -> Marginal<N> {
-        let best = self.best(sums);
+        self.integrate_at(sums, self.best(sums))
+    }
+
+    /// The same about other forces and stiffnesses.
+    pub fn integrate_at<const N: usize>(&self, sums: &Sums<N>, best: [Vector2<f64>; N]) -> Marginal<N> {
         let misfit = sums.misfit(&best);
         let widths =
             best.map(|number| Vector2::new(width(number[0], self.force), width(number[1], self.stiffness)));
@@ -252,7 +256,12 @@ impl Prior {
 
     /// The log-likelihood at most, whatever other measurements say, which have so many rows in all: each can only lessen it.
     pub fn most<const N: usize>(&self, sums: &Sums<N>, rows: f64) -> f64 {
-        -0.5 * (self.weighed(sums.misfit(&self.best(sums)), rows) + sums.cost)
+        self.most_at(sums, &self.best(sums), rows)
+    }
+
+    /// The same with these forces and stiffnesses.
+    pub fn most_at<const N: usize>(&self, sums: &Sums<N>, numbers: &[Vector2<f64>; N], rows: f64) -> f64 {
+        -0.5 * (self.weighed(sums.misfit(numbers), rows) + sums.cost)
     }
 
     /// By how much the variance of the torques' noise is greater than stated: what explains the misfit best, and never less than one.
