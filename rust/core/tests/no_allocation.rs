@@ -11,7 +11,7 @@ use contactsense::isolation::{ContactIsolator, IsolatorOptions};
 use contactsense::map::{ContactMap, MapOptions};
 use contactsense::monitor::{ContactMonitor, MonitorOptions};
 use contactsense::observer::MomentumObserver;
-use contactsense::particle::{ContactParticleFilter, FilterOptions};
+use contactsense::particle::{ContactParticleFilter, FilterOptions, ForceModel};
 use contactsense::reaction::{Reaction, ReactionLimits};
 use contactsense::robot::Robot;
 use contactsense::sampler::{ContactModel, SamplerOptions, StaticObstacleSampler};
@@ -356,6 +356,31 @@ fn an_update_of_a_sampler_allocates_nothing_on_one_thread() {
         assert!(made <= if threads == 1 { 0 } else { 20 }, "{threads} threads: {made} allocations");
         assert!(felt > 30, "the contact was felt: {felt}");
     }
+}
+
+#[test]
+fn an_update_of_a_sampler_of_several_contacts_with_friction_allocates_nothing() {
+    let _alone = ALONE.lock().expect("the other tests have not failed");
+    let robot = common::meshed_arm();
+    let run = common::ball_run(&robot, "arm_4", 8);
+    let options = SamplerOptions {
+        particles: 200,
+        window: 6,
+        max_contacts: 3,
+        force_model: ForceModel::FrictionCone(0.3),
+        ..SamplerOptions::default()
+    };
+    let mut sampler = StaticObstacleSampler::new(robot, &options).expect("valid options");
+    sampler.update(&run.poses[0], &run.torques[0], None).expect("valid input");
+    let mut felt = 0;
+    let made = allocations(|| {
+        for (q, torque) in run.poses.iter().zip(&run.torques) {
+            let found = sampler.update(q, torque, None).expect("valid input");
+            felt += usize::from(found.estimate.contact.is_some());
+        }
+    });
+    assert_eq!(made, 0);
+    assert!(felt > 15, "the contact was felt: {felt}");
 }
 
 /// At the second and the last link of the arm, and of each limb.

@@ -10,7 +10,7 @@ use super::measurements::Measurement;
 use super::path::{logs, ContactPath};
 use super::sums::Sums;
 use crate::posterior::tempering::{Logs, Proposal, Wanted};
-use crate::torque::{AllDirections, ForceModel};
+use crate::torque::AllDirections;
 
 /// Normal forces of the contacts with obstacles at any pose.
 #[derive(Debug, Clone, Copy)]
@@ -68,7 +68,8 @@ impl<const N: usize> ContactPath<'_, N> {
 
     /// Whether friction is in proportion to forces that all measurements tell.
     pub(super) fn sized_by_forces(&self, contacts: &[Contact; N]) -> bool {
-        self.force_model != ForceModel::Normal && contacts[0].claim.model == ContactModel::Obstacle
+        let friction = self.force_model.deviation_of_sliding(1.0).is_some();
+        friction && contacts[0].claim.model == ContactModel::Obstacle
     }
 
     /// As large as can be, whatever was measured.

@@ -27,6 +27,11 @@ impl Scene {
 
     /// The torque at a pose and where the contact is, where there is one of some force.
     fn at(&self, q: &[f64]) -> Option<(Vec<f64>, Vector3<f64>)> {
+        self.at_with_friction(q, 0.0, 0.0)
+    }
+
+    /// The same with all friction that a coefficient allows, in a direction (rad).
+    fn at_with_friction(&self, q: &[f64], friction: f64, direction: f64) -> Option<(Vec<f64>, Vector3<f64>)> {
         let link = crate::robot::LinkIndex::new(self.link);
         let pose = self.robot.link_pose(q, link).expect("a pose");
         let surface = self.robot.links()[self.link].surface.as_ref().expect("a surface");
@@ -37,7 +42,10 @@ impl Scene {
             return None;
         }
         let point = pose.transform_point(&near.point);
-        let push = (point - self.centre) * (force / near.distance);
+        let inward = (point - self.centre) / near.distance;
+        let [_, along, beside] = crate::torque::directions(&inward);
+        let across = (along * direction.cos() + beside * direction.sin()) * friction;
+        let push = (inward + across) * force;
         let jacobian = self.robot.jacobian(q, link, Some(point.into())).expect("a Jacobian");
         Some(((jacobian.rows(0, 3).transpose() * push).as_slice().to_vec(), point))
     }
@@ -149,8 +157,77 @@ fn a_window_that_is_full_forgets_the_oldest() {
 }
 
 fn path<const N: usize>(sampler: &StaticObstacleSampler) -> super::super::path::ContactPath<'_, N> {
-    let StaticObstacleSampler { robot, measurements, options, models, places, .. } = sampler;
-    super::Scene { robot, measurements, options, models, places }.path()
+    let StaticObstacleSampler { robot, measurements, options, models, places, neighbours, .. } = sampler;
+    super::Scene { robot, measurements, options, models, places, neighbours }.path()
+}
+
+#[test]
+fn what_was_known_before_a_measurement_is_known_of_any_hypothesis_with_friction() {
+    let scene = Scene::new(5, 0.2);
+    let options = SamplerOptions {
+        particles: 300,
+        window: 5,
+        force_model: ForceModel::FrictionCone(0.3),
+        ..SamplerOptions::default()
+    };
+    let mut sampler = StaticObstacleSampler::new(scene.robot.clone(), &options).expect("valid options");
+    let mut known: Vec<super::super::hypothesis::Hypothesis<2>> = vec![];
+    let mut compared = 0;
+    for tick in 0..20 {
+        let q = scene.pose(tick);
+        let Some((torque, _)) = scene.at(&q) else { continue };
+        sampler.update(&q, &torque, None).expect("valid input");
+        let path = path::<2>(&sampler);
+        if known.is_empty() {
+            let claims = |k| {
+                [k, 7 * k + 3].map(|place| path.claim(ContactModel::Obstacle, place, 0.01 * place as f64))
+            };
+            known.extend((0..10).filter_map(|k| path.make(claims(k), None)));
+            continue;
+        }
+        for hypothesis in &mut known {
+            let before = hypothesis.marginal.log;
+            path.follow(hypothesis);
+            let anew = path.make(hypothesis.contacts.map(|contact| contact.claim), None).expect("a surface");
+            assert_eq!(hypothesis.logs.start, before);
+            let error = (anew.logs.start - before).abs();
+            assert!(error < 1e-6 * (1.0 + before.abs()), "{error} {before}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 100, "{compared}");
+}
+
+#[test]
+fn friction_is_not_taken_for_one_more_contact() {
+    let friction = 0.3;
+    let [first, second] = [Scene::new(3, 0.3), Scene::new(6, 0.8)];
+    let options = SamplerOptions {
+        particles: 1500,
+        max_contacts: 3,
+        force_model: ForceModel::FrictionCone(friction),
+        ..SamplerOptions::default()
+    };
+    let mut sampler = StaticObstacleSampler::new(first.robot.clone(), &options).expect("valid options");
+    let mut truth = [Vector3::zeros(); 2];
+    for tick in 0..25 {
+        let q = first.pose(tick);
+        // It slides to one side, then to another.
+        let [one, other] = [(&first, 2.3), (&second, 3.1)]
+            .map(|(scene, turn)| scene.at_with_friction(&q, friction, turn * tick as f64));
+        let (Some(one), Some(other)) = (one, other) else { continue };
+        truth = [one.1, other.1];
+        let torque: Vec<f64> = one.0.iter().zip(&other.0).map(|(one, other)| one + other).collect();
+        sampler.update(&q, &torque, None).expect("valid input");
+    }
+    assert!(sampler.number_probabilities()[1] > 0.9, "{:?}", sampler.number_probabilities());
+    let found = sampler.estimate();
+    assert!(found.residual < 1.2, "{}", found.residual);
+    for truth in truth {
+        let contacts = [&found.estimate, &found.others[0]].map(|estimate| estimate.contact);
+        let errors = contacts.map(|contact| (contact.expect("a contact").point - truth).norm());
+        assert!(errors[0].min(errors[1]) < 0.02, "{errors:?}");
+    }
 }
 
 #[test]
