@@ -24,7 +24,7 @@ ROUND_TRIPS = {
 def attributes(obj, within=()):
     """All public attributes, as bytes where they are numbers; results and tuples by what they hold.
 
-    An estimate is the first of its own `contacts`: what is met again within itself is given by its depth only.
+    An estimate is the first of its own `contacts`: what is met again within itself is given by its depth.
     """
     if any(obj is outer for outer in within):
         return len(within)

@@ -10,6 +10,7 @@ from contactsense import ContactMap, ContactParticleFilter, Robot, StaticObstacl
 from contactsense.sim import ContactRun, TorqueNoise
 
 from ..bimbo2019.score import Outcome, judge
+from .options import Options
 
 # Noise of each external torque, of which nothing is said [%]: three are granted by default.
 NOISES = (0.0, 5.0, 10.0)
@@ -24,7 +25,7 @@ class Method:
     """A way to locate a contact, and each how many samples of a run it is fed."""
 
     name: str
-    make: Callable[[Robot, int, int], Update]  # of robot, particles and seed
+    make: Callable[[Robot, Options], Update]
     every: int = 1
 
 
@@ -36,25 +37,33 @@ class Found:
     near: bool  # a probable place is near the true one
 
 
-def _filter(robot: Robot, particles: int, seed: int) -> Update:
-    return ContactParticleFilter(robot, particles=particles, seed=seed).update
+def _filter(robot: Robot, options: Options) -> Update:
+    return ContactParticleFilter(robot, **_of_particles(options)).update
 
 
-def _sampler(robot: Robot, particles: int, seed: int) -> Update:
-    return StaticObstacleSampler(robot, particles=particles, seed=seed).update
+def _sampler(robot: Robot, options: Options) -> Update:
+    return StaticObstacleSampler(robot, **_of_particles(options)).update
 
 
-def _map(robot: Robot, particles: int, seed: int) -> Update:
-    return ContactMap(robot).evaluate
+def _of_particles(options: Options) -> dict[str, Any]:
+    common = {"particles": options.particles, "seed": options.seed}
+    rubbing = {"measurement": "friction_cone", "friction": options.friction}
+    return {**common, **rubbing} if options.friction > 0.0 else common
+
+
+def _map(robot: Robot, options: Options) -> Update:
+    return (
+        ContactMap(robot, friction=options.friction) if options.friction > 0.0 else ContactMap(robot)
+    ).evaluate
 
 
 METHODS = (Method("map", _map, every=5), Method("filter", _filter), Method("sampler", _sampler, every=4))
 
 
-def locate(robot: Robot, run: ContactRun, method: Method, noise: float, particles: int, seed: int) -> Found:
-    """Feeds the run to the end, with noise of so many per cent."""
-    update = method.make(robot, particles, seed)
-    torques = TorqueNoise(percent=noise, seed=seed)
+def locate(robot: Robot, run: ContactRun, method: Method, noise: float, options: Options) -> Found:
+    """Feeds the run to the end, with noise of so many per cent; the seed of `options` is the trial's."""
+    update = method.make(robot, options)
+    torques = TorqueNoise(percent=noise, seed=options.seed)
     for row, (q, torque) in enumerate(zip(run.q, run.external_torque, strict=True)):
         measured = torques.measure(torque)
         if row % method.every == 0:

@@ -7,6 +7,8 @@ from typing import Annotated
 
 from typer import Option
 
+from contactsense import InputError
+
 from ..bimbo2019.options import Options as Runs
 from ..harness import check_counts
 
@@ -24,10 +26,13 @@ class Options:
     ] = ()
     trials: Annotated[int, Option(help="Number of trials per link.")] = 20
     particles: Annotated[int, Option(help="Number of particles of filter and sampler.")] = 10_000
+    friction: Annotated[float, Option(help="Coefficient of friction, which all are told.")] = 0.0
     seed: Annotated[int, Option(help="Seed of poses, points, motions, noise and particles.")] = 0
 
     def __post_init__(self) -> None:
         check_counts(self.seed, trials=self.trials, particles=self.particles)
+        if not self.friction >= 0.0:
+            raise InputError(f"friction must be zero or positive, got {self.friction}")
 
     def runs(self) -> Runs:
         """Options of the recorded runs."""

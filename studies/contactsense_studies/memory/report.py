@@ -26,7 +26,9 @@ def print_study(study: Study, console: Console) -> None:
 
 def _table(study: Study, noise: float) -> Table:
     figures = ("n", "right", "mean", "median", "90 %", "unsure", "near")
-    shown = sheet(f"Noise of {noise:g} %", ("link", "method"), figures)
+    friction = study.options.friction
+    title = f"Noise of {noise:g} %" + (f", friction {friction:g}" if friction else "")
+    shown = sheet(title, ("link", "method"), figures)
     for link in study.links:
         for method in METHODS:
             found = study.found(method.name, noise, link)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from contactsense import InputError
@@ -68,11 +68,12 @@ def _trial(item: Item) -> Trial:
     arm = load_arm(options.runs())
     seed = trial_seed(options.seed, EXPERIMENT, link, number)
     try:
-        recorded = record(arm, BY_NAME[EXPERIMENT], link, number, seed)
+        experiment = replace(BY_NAME[EXPERIMENT], friction=options.friction)
+        recorded = record(arm, experiment, link, number, seed)
     except InputError:
         return Trial(link, number, {})
     found = {
-        (method.name, noise): locate(arm.robot, recorded, method, noise, options.particles, seed)
+        (method.name, noise): locate(arm.robot, recorded, method, noise, replace(options, seed=seed))
         for method in METHODS
         for noise in NOISES
     }

@@ -13,7 +13,8 @@ from .runs import SeveralRun
 
 # A point is found within `CLOSE`; one that is said to be known is wrong beyond `WRONG` [m].
 CLOSE, WRONG = 0.03, 0.05
-# A probable place counts as near the truth; the truth is among the probable places if it is within so many of the place's spreads.
+# A probable place counts as near the truth. The truth is among the probable places if it is near one, or
+# within so many of its spreads.
 PROBABLE, NEAR, SPREADS = 0.1, 0.02, 2.0
 
 
