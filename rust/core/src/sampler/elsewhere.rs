@@ -28,14 +28,15 @@ impl<const N: usize> ContactPath<'_, N> {
         let count = self.measurements.all().count();
         let pose = (random.uniform(0) * count as f64) as usize;
         let measurement = self.measurements.all().nth(pose)?;
-        let counts = measurement.before + share * (measurement.now - measurement.before);
+        let [before, now] = self.counts(measurement);
+        let counts = before + share * (now - before);
         // Friction is not looked at: it may be left over.
         let friction = self.force_model.deviation_of_sliding(1.0).unwrap_or(0.0);
         let tolerance = TOLERANCE.hypot(friction);
         let scale = 1.0 + tolerance * tolerance * measurement.target.squared / measurement.rows.max(1.0);
         let touches = sample.contacts.map(|contact| self.place(&contact, measurement).0);
         let links = sample.contacts.map(|contact| contact.claim.link);
-        let bare = self.normals(&links, &touches, measurement);
+        let bare = self.forces_in::<1>(&links, measurement, &touches).bare();
         let claimed = sample.contacts[contact].claim;
         let fits = |claim: &Claim| {
             let (touch, _) = self.place(&self.contact(*claim), measurement);
@@ -76,26 +77,15 @@ impl<const N: usize> ContactPath<'_, N> {
         measurement: &Measurement,
     ) -> SeveralPushes<N> {
         let mut pushes = *pushes;
-        let Some(between) = &measurement.between else { return pushes };
         let wrench = |touch: &Touch| stack(&-touch.normal, &-touch.point.cross(&touch.normal));
         let own = wrench(touch);
         pushes.product[contact] = own.dot(&measurement.target.on(link as usize).product);
         for other in 0..N {
             let (link_of, wrench_of) =
                 if other == contact { (link, own) } else { (links[other], wrench(&touches[other])) };
-            let inner = own.dot(&(between.of(link as usize, link_of as usize) * wrench_of));
+            let inner = own.dot(&(measurement.gram_of(link as usize, link_of as usize) * wrench_of));
             pushes.gain[contact][other] = inner;
             pushes.gain[other][contact] = inner;
-        }
-        pushes
-    }
-
-    /// Pushes along the normals.
-    fn normals(&self, links: &[u32; N], touches: &[Touch; N], measurement: &Measurement) -> SeveralPushes<N> {
-        let mut pushes = SeveralPushes { target: measurement.target.squared, ..SeveralPushes::NONE };
-        for contact in 0..N {
-            let at = (links[contact], &touches[contact]);
-            pushes = self.with(&pushes, links, touches, contact, at, measurement);
         }
         pushes
     }

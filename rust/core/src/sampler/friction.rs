@@ -103,7 +103,7 @@ impl<const N: usize> ContactPath<'_, N> {
         let forces = [&rough.sums[0], &rough.sums[1]].map(|sums| self.best_forces(sums));
         let (_, sums) = self.add_up(contacts, &forces, |_| true)?;
         let forces = [&sums[0], &sums[1]].map(|sums| self.best_forces(sums));
-        let rows = self.measurements.rows;
+        let rows = self.rows();
         let most = |sums: &[Sums<N>; 2]| {
             let [start, end] = [0, 1].map(|k| self.prior.most_at(&sums[k], &forces[k].numbers, rows[k]));
             Logs { start, added: end - start }

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::friction::NormalForces;
 use super::hypothesis::{Claim, Contact, ContactModel, Hypothesis, Touch};
-use super::measurements::Measurements;
+use super::measurements::{Measurement, Measurements};
 use super::neighbours::Neighbours;
 use super::sums::{Prior, Sums};
 use crate::math::random::Stream;
@@ -47,6 +47,8 @@ pub(super) struct ContactPath<'a, const N: usize> {
     pub prior: Prior,
     pub force_model: ForceModel,
     pub log_radius: [f64; 2],
+    /// Whether the way begins without any measurement.
+    pub nothing_before: bool,
 }
 
 impl<const N: usize> ContactPath<'_, N> {
@@ -98,8 +100,7 @@ impl<const N: usize> ContactPath<'_, N> {
         for (number, measurement) in self.measurements.scattered().enumerate() {
             let (touches, felt) = self.touch(&contacts, measurement);
             put(&mut contacts, touches);
-            let counts = [measurement.before, measurement.now];
-            for ((sums, share), forces) in both.iter_mut().zip(counts).zip(forces) {
+            for ((sums, share), forces) in both.iter_mut().zip(self.counts(measurement)).zip(forces) {
                 if share > 0.0 {
                     sums.add(share, &self.sums(&felt, measurement, forces));
                 }
@@ -116,9 +117,20 @@ impl<const N: usize> ContactPath<'_, N> {
         Some((contacts, both))
     }
 
+    /// How much a measurement counted before the newest one came, and counts now.
+    pub fn counts(&self, measurement: &Measurement) -> [f64; 2] {
+        [if self.nothing_before { 0.0 } else { measurement.before }, measurement.now]
+    }
+
+    /// Torques that tell of the noise, before the newest measurement came and now.
+    pub fn rows(&self) -> [f64; 2] {
+        let [before, now] = self.measurements.rows;
+        [if self.nothing_before { 0.0 } else { before }, now]
+    }
+
     /// What the densities can be at most, whatever other measurements say.
     pub fn most(&self, [before, now]: &[Sums<N>; 2]) -> Logs {
-        let [rows_before, rows_now] = self.measurements.rows;
+        let [rows_before, rows_now] = self.rows();
         let (start, end) = (self.prior.most(before, rows_before), self.prior.most(now, rows_now));
         Logs { start, added: end - start }
     }

@@ -43,6 +43,7 @@ impl<'a> Scene<'a> {
             prior: Prior { force: options.force_range, stiffness: options.stiffness_range },
             force_model: options.force_model,
             log_radius: options.radius_range.map(f64::ln),
+            nothing_before: false,
         }
     }
 }
@@ -55,7 +56,8 @@ pub(super) trait Population: std::fmt::Debug + Send + Sync {
     /// Contacts begin, or others than `before`: the first of those that are there again come in that order (world frame).
     fn begin(&mut self, before: &[Vector3<f64>]);
 
-    /// Takes the newest measurement into all hypotheses, spread `anew` over the surface or as they are, and moves them.
+    /// Takes the newest measurement into all hypotheses and moves them; or all measurements, where they are spread `anew` over the
+    /// surface.
     fn update(
         &mut self,
         scene: Scene<'_>,
@@ -73,6 +75,9 @@ pub(super) trait Population: std::fmt::Debug + Send + Sync {
 
     /// The least squared torques that a hypothesis leaves over.
     fn misfit(&self) -> f64;
+
+    /// Logarithm of the greatest likelihood of a hypothesis, but for a constant of the measurements.
+    fn greatest_log(&self) -> f64;
 
     /// They sum to one.
     fn weights(&self) -> &[f64];
@@ -143,7 +148,7 @@ impl<const N: usize> Population for Hypotheses<N> {
         random: Stream,
         course: Course<'_>,
     ) -> Travelled {
-        let path = scene.path::<N>();
+        let path = ContactPath { nothing_before: anew, ..scene.path::<N>() };
         let count = self.samples.all.len();
         if anew {
             self.samples.restart();
@@ -193,6 +198,10 @@ impl<const N: usize> Population for Hypotheses<N> {
 
     fn misfit(&self) -> f64 {
         self.samples.all.iter().map(|hypothesis| hypothesis.marginal.misfit).fold(f64::INFINITY, f64::min)
+    }
+
+    fn greatest_log(&self) -> f64 {
+        self.samples.all.iter().map(|hypothesis| hypothesis.marginal.log).fold(f64::NEG_INFINITY, f64::max)
     }
 
     fn weights(&self) -> &[f64] {

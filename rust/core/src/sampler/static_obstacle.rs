@@ -6,7 +6,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use super::hypothesis::ContactModel;
-use super::measurements::Measurements;
+use super::measurements::{Measurement, Measurements};
 use super::neighbours::Neighbours;
 use super::options::SamplerOptions;
 use super::particle::Particle;
@@ -36,6 +36,10 @@ const GRANTED: f64 = 3.0;
 const FITTED: usize = 5;
 /// Poses that tell an obstacle that stays from what is none.
 const LEAST_POSES: usize = 4;
+/// Hypotheses of several contacts that leave over so many times the variance of noise, at 99 %, have missed where these are: they are
+/// spread anew with all poses, if there are twice as many as when that was last done; and moves of a particle then, at most.
+const MISSED: f64 = 2.0;
+const SEARCH_MOVES: usize = 60;
 /// How probable one more contact is beforehand, as a share. A contact that is there soon shows by hundreds of nats; what friction and
 /// curvature do beside the model can feign some.
 const ONE_MORE: f64 = 1e-6;
@@ -87,6 +91,8 @@ pub struct StaticObstacleSampler {
     /// Of one contact, two and so on, and which of these are followed.
     populations: Vec<Box<dyn Population>>,
     followed: Vec<bool>,
+    /// How many poses there were when each was last spread.
+    searched: Vec<usize>,
     /// Probability of each, and the most probable.
     numbers: Vec<f64>,
     likely: usize,
@@ -123,6 +129,7 @@ impl StaticObstacleSampler {
         Ok(StaticObstacleSampler {
             populations,
             followed: vec![true; most],
+            searched: vec![LEAST_POSES / 2; most],
             numbers: vec![0.0; most],
             likely: 0,
             clusters: Clusters::new(options.particles, robot.links().len())?,
@@ -331,8 +338,10 @@ impl StaticObstacleSampler {
         if anew {
             self.measurements.clear();
             self.followed.fill(true);
+            self.searched.fill(LEAST_POSES / 2);
         }
         self.measurements.take_in(&self.instant, kept);
+        let rows = self.measurements.len() * self.instant.torque.len();
         let Self {
             robot,
             options,
@@ -340,6 +349,7 @@ impl StaticObstacleSampler {
             measurements,
             populations,
             followed,
+            searched,
             moves,
             window,
             stop,
@@ -359,16 +369,30 @@ impl StaticObstacleSampler {
             moves: (most_moves / LEAST_STEPS).clamp(1, MOST_MOVES),
             most_moves,
         };
-        let without: f64 = measurements
-            .scattered()
-            .map(|measurement| 0.5 * (measurement.now - measurement.before) * measurement.target.squared)
-            .sum();
+        let without = |before: f64| -> f64 {
+            let of = |measurement: &Measurement| {
+                0.5 * (measurement.now - before * measurement.before) * measurement.target.squared
+            };
+            measurements.scattered().map(of).sum()
+        };
+        let poses = measurements.len();
+        let thorough = Tempering { moves: MOST_MOVES, most_moves: SEARCH_MOVES, ..tempering };
         let mut weighed = [(0.0, 0.0); MOST_CONTACTS];
         pool.install(|| {
             for (k, population) in populations.iter_mut().enumerate().filter(|(k, _)| followed[*k]) {
                 let course = Course { threads, stop };
-                let travelled = population.update(scene, anew, tempering, random.fork(k as u64), course);
-                weighed[k] = (travelled.effective, travelled.log_evidence + without);
+                let known = population.log_evidence();
+                let mut travelled = population.update(scene, anew, tempering, random.fork(k as u64), course);
+                let mut log_evidence = known + travelled.log_evidence + without(1.0);
+                // A single contact was looked for on the whole surface.
+                let due = k > 0 && poses >= 2 * searched[k];
+                if due && population.misfit() > MISSED * upper_limit(rows) {
+                    searched[k] = poses;
+                    let random = random.fork((MOST_CONTACTS + k) as u64);
+                    travelled = population.update(scene, true, thorough, random, course);
+                    log_evidence = travelled.log_evidence + without(0.0);
+                }
+                weighed[k] = (travelled.effective, log_evidence - known);
                 population.add_log_evidence(weighed[k].1);
             }
         });
@@ -378,13 +402,20 @@ impl StaticObstacleSampler {
 
     /// How probable each number of contacts is.
     fn choose(&mut self) {
-        let log = |k: usize| match self.followed[k] {
-            true => self.populations[k].log_evidence() + k as f64 * ONE_MORE.ln(),
-            false => f64::NEG_INFINITY,
-        };
-        let greatest = (0..self.numbers.len()).map(log).fold(f64::NEG_INFINITY, f64::max);
-        for (k, number) in self.numbers.iter_mut().enumerate() {
-            *number = if greatest > f64::NEG_INFINITY { (log(k) - greatest).exp() } else { 1.0 };
+        let mut logs = [f64::NEG_INFINITY; MOST_CONTACTS];
+        let mut fewer: Option<(f64, f64)> = None;
+        for (k, population) in self.populations.iter().enumerate().filter(|(k, _)| self.followed[*k]) {
+            let greatest = population.greatest_log();
+            // One more contact cannot be more probable than its best hypothesis is likelier than the best without it. Particles that
+            // were led astray take the evidence of few contacts to be less than it is.
+            let most = fewer.map_or(f64::INFINITY, |(log, without)| log + greatest - without);
+            let log = population.log_evidence().min(most);
+            fewer = Some((log, greatest));
+            logs[k] = log + k as f64 * ONE_MORE.ln();
+        }
+        let greatest = logs.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        for (number, log) in self.numbers.iter_mut().zip(logs) {
+            *number = if greatest > f64::NEG_INFINITY { (log - greatest).exp() } else { 1.0 };
         }
         let sum: f64 = self.numbers.iter().sum();
         self.numbers.iter_mut().for_each(|number| *number /= sum);

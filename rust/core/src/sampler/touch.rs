@@ -100,7 +100,7 @@ impl<const N: usize> ContactPath<'_, N> {
     }
 
     /// Inner products of the torques of unit forces in the first `USED` directions: along the normals, and across them.
-    fn forces_in<const USED: usize>(
+    pub(super) fn forces_in<const USED: usize>(
         &self,
         links: &[u32; N],
         measurement: &Measurement,

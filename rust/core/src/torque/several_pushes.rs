@@ -22,10 +22,6 @@ pub(crate) struct SeveralPushes<const N: usize> {
 }
 
 impl<const N: usize> SeveralPushes<N> {
-    /// No rows.
-    pub const NONE: Self =
-        SeveralPushes { gain: [[0.0; N]; N], product: [0.0; N], target: 0.0, penalty: 0.0 };
-
     /// The squared torques that forces leave over.
     pub fn misfit(&self, forces: &[f64; N]) -> f64 {
         let mut misfit = self.target;
@@ -154,7 +150,8 @@ mod tests {
         let pushes = SeveralPushes::<2> {
             gain: [[2.0, 0.5], [0.5, 1.0]],
             product: [2.0 * 10.0 + 0.5 * 20.0, 0.5 * 10.0 + 20.0],
-            ..SeveralPushes::NONE
+            target: 0.0,
+            penalty: 0.0,
         };
         let free = pushes.forces([1.0, 100.0]);
         assert!((free[0] - 10.0).abs() < 1e-3 && (free[1] - 20.0).abs() < 1e-3, "{free:?}");
