@@ -37,9 +37,11 @@ const FITTED: usize = 5;
 /// Poses that tell an obstacle that stays from what is none.
 const LEAST_POSES: usize = 4;
 /// Hypotheses of several contacts that leave over so many times the variance of noise, at 99 %, have missed where these are: they are
-/// spread anew with all poses, if there are twice as many as when that was last done; and moves of a particle then, at most.
+/// spread anew with all poses. That is done at so many poses for the first time, and again when there are half as many more; with so
+/// many moves of a particle at most.
 const MISSED: f64 = 2.0;
-const SEARCH_MOVES: usize = 60;
+const FIRST_SEARCH: usize = 4;
+const SEARCH_MOVES: usize = 100;
 /// How probable one more contact is beforehand, as a share. A contact that is there soon shows by hundreds of nats; what friction and
 /// curvature do beside the model can feign some.
 const ONE_MORE: f64 = 1e-6;
@@ -129,7 +131,7 @@ impl StaticObstacleSampler {
         Ok(StaticObstacleSampler {
             populations,
             followed: vec![true; most],
-            searched: vec![LEAST_POSES / 2; most],
+            searched: vec![0; most],
             numbers: vec![0.0; most],
             likely: 0,
             clusters: Clusters::new(options.particles, robot.links().len())?,
@@ -338,7 +340,7 @@ impl StaticObstacleSampler {
         if anew {
             self.measurements.clear();
             self.followed.fill(true);
-            self.searched.fill(LEAST_POSES / 2);
+            self.searched.fill(0);
         }
         self.measurements.take_in(&self.instant, kept);
         let rows = self.measurements.len() * self.instant.torque.len();
@@ -385,7 +387,7 @@ impl StaticObstacleSampler {
                 let mut travelled = population.update(scene, anew, tempering, random.fork(k as u64), course);
                 let mut log_evidence = known + travelled.log_evidence + without(1.0);
                 // A single contact was looked for on the whole surface.
-                let due = k > 0 && poses >= 2 * searched[k];
+                let due = k > 0 && poses >= FIRST_SEARCH && 2 * poses >= 3 * searched[k];
                 if due && population.misfit() > MISSED * upper_limit(rows) {
                     searched[k] = poses;
                     let random = random.fork((MOST_CONTACTS + k) as u64);
