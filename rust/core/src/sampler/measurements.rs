@@ -31,7 +31,7 @@ impl Measurement {
     pub fn gram_of(&self, link: usize, other: usize) -> &Matrix6<f64> {
         match &self.between {
             Some(between) if link != other => between.of(link, other),
-            _ => &self.links[link].gram(),
+            _ => self.links[link].gram(),
         }
     }
 }

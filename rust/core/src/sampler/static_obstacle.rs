@@ -388,11 +388,13 @@ impl StaticObstacleSampler {
                 let mut log_evidence = known + travelled.log_evidence + without(1.0);
                 // A single contact was looked for on the whole surface.
                 let due = k > 0 && poses >= FIRST_SEARCH && 2 * poses >= 3 * searched[k];
-                if due && population.misfit() > MISSED * upper_limit(rows) {
-                    searched[k] = poses;
+                let stopped = || stop.load(Ordering::Relaxed);
+                if due && !stopped() && population.misfit() > MISSED * upper_limit(rows) {
                     let random = random.fork((MOST_CONTACTS + k) as u64);
                     travelled = population.update(scene, true, thorough, random, course);
                     log_evidence = travelled.log_evidence + without(0.0);
+                    // What was broken off is due again.
+                    searched[k] = if stopped() { 0 } else { poses };
                 }
                 weighed[k] = (travelled.effective, log_evidence - known);
                 population.add_log_evidence(weighed[k].1);
