@@ -2231,7 +2231,7 @@ class StaticObstacleSampler:
     def number_probabilities(self) -> NDArray[np.float64]:
         """Probability that there are one, two, ... contacts, `(max_contacts,)`; all zero without a contact. A new array at every access.
 
-        Beforehand, each further contact is a thousand times less probable than none: one that turns no joint is not told.
+        Beforehand, each further contact is a million times less probable than none: small errors of the model feign none.
         """
     @property
     def log_evidence(self) -> float:
@@ -2730,7 +2730,8 @@ class MapEstimate(ContactEstimate):
         """All attributes by name.
 
         Returns:
-            Plain Python values: numbers, strings, lists in place of arrays and tuples, and dicts in place of modes.
+            Plain Python values: numbers, strings, lists in place of arrays and tuples, and dicts in place of modes and of
+            `contacts`.
         """
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property
