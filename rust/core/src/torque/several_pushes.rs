@@ -5,7 +5,7 @@
 
 /// Directions of a force: along the inward normal, and two across it.
 const DIRECTIONS: usize = 3;
-/// Sweeps over the contacts for their forces at one pose: they are needed only for how large friction can be.
+/// Sweeps over the contacts for their forces at one pose: moves are led by them, nothing is weighed with them.
 const SWEEPS: usize = 8;
 
 /// Normal equations of the forces along the normals, of one contact or several.

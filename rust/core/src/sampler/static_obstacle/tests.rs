@@ -1,5 +1,7 @@
 use nalgebra::Vector3;
 
+use super::super::hypothesis::Hypothesis;
+use super::super::path::ContactPath;
 use super::*;
 use crate::torque::ForceModel;
 
@@ -120,16 +122,30 @@ fn answers_are_the_same_on_any_number_of_threads() {
     assert!(run(1) == run(2));
 }
 
-#[test]
-fn a_window_that_is_full_forgets_the_oldest() {
+/// Of two contacts at most, with room for five poses.
+fn with_a_short_window(friction: f64) -> (Scene, StaticObstacleSampler) {
     let scene = Scene::new(5, 0.2);
     let options = SamplerOptions {
         particles: 300,
         window: 5,
-        force_model: ForceModel::FrictionCone(0.0),
+        max_contacts: 2,
+        force_model: ForceModel::FrictionCone(friction),
         ..SamplerOptions::default()
     };
-    let mut sampler = StaticObstacleSampler::new(scene.robot.clone(), &options).expect("valid options");
+    let sampler = StaticObstacleSampler::new(scene.robot.clone(), &options).expect("valid options");
+    (scene, sampler)
+}
+
+/// Hypotheses of two contacts here and there.
+fn ten(path: &ContactPath<'_, 2>) -> Vec<Hypothesis<2>> {
+    let claims =
+        |k| [k, 7 * k + 3].map(|place| path.claim(ContactModel::Obstacle, place, 0.01 * place as f64));
+    (0..10).filter_map(|k| path.make(claims(k), None)).collect()
+}
+
+#[test]
+fn a_window_that_is_full_forgets_the_oldest() {
+    let (scene, mut sampler) = with_a_short_window(0.0);
     let mut hypotheses = vec![];
     for tick in 0..20 {
         let q = scene.pose(tick);
@@ -138,10 +154,7 @@ fn a_window_that_is_full_forgets_the_oldest() {
         assert!(sampler.measurements.len() <= 5);
         let path = path::<2>(&sampler);
         if hypotheses.is_empty() {
-            let claims = |k| {
-                [k, 7 * k + 3].map(|place| path.claim(ContactModel::Obstacle, place, 0.01 * place as f64))
-            };
-            hypotheses.extend((0..10).filter_map(|k| path.make(claims(k), None)));
+            hypotheses = ten(&path);
         } else {
             hypotheses.iter_mut().for_each(|hypothesis| path.follow(hypothesis));
         }
@@ -156,22 +169,15 @@ fn a_window_that_is_full_forgets_the_oldest() {
     }
 }
 
-fn path<const N: usize>(sampler: &StaticObstacleSampler) -> super::super::path::ContactPath<'_, N> {
+fn path<const N: usize>(sampler: &StaticObstacleSampler) -> ContactPath<'_, N> {
     let StaticObstacleSampler { robot, measurements, options, models, places, neighbours, .. } = sampler;
     super::Scene { robot, measurements, options, models, places, neighbours }.path()
 }
 
 #[test]
 fn what_was_known_before_a_measurement_is_known_of_any_hypothesis_with_friction() {
-    let scene = Scene::new(5, 0.2);
-    let options = SamplerOptions {
-        particles: 300,
-        window: 5,
-        force_model: ForceModel::FrictionCone(0.3),
-        ..SamplerOptions::default()
-    };
-    let mut sampler = StaticObstacleSampler::new(scene.robot.clone(), &options).expect("valid options");
-    let mut known: Vec<super::super::hypothesis::Hypothesis<2>> = vec![];
+    let (scene, mut sampler) = with_a_short_window(0.3);
+    let mut known = vec![];
     let mut compared = 0;
     for tick in 0..20 {
         let q = scene.pose(tick);
@@ -179,10 +185,7 @@ fn what_was_known_before_a_measurement_is_known_of_any_hypothesis_with_friction(
         sampler.update(&q, &torque, None).expect("valid input");
         let path = path::<2>(&sampler);
         if known.is_empty() {
-            let claims = |k| {
-                [k, 7 * k + 3].map(|place| path.claim(ContactModel::Obstacle, place, 0.01 * place as f64))
-            };
-            known.extend((0..10).filter_map(|k| path.make(claims(k), None)));
+            known = ten(&path);
             continue;
         }
         for hypothesis in &mut known {
