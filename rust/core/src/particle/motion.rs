@@ -142,7 +142,7 @@ pub(crate) fn signed(near: &ClosestPoint, local: &Vector3<f64>) -> (f64, Vector3
         return (near.distance, near.normal);
     }
     // On an edge or a corner the direction is between the faces' normals.
-    let side = if apart.dot(&near.normal) < 0.0 { -1.0 } else { 1.0 };
+    let side = if near.inside { -1.0 } else { 1.0 };
     (side * near.distance, apart * (side / near.distance))
 }
 

@@ -20,6 +20,8 @@ const MOST_NUMBERS: usize = 2 * MOST_CONTACTS;
 /// by less than this share of all torques.
 const ROUNDS: usize = 4;
 const SETTLED: f64 = 1e-6;
+/// Share of all torques that rounding can turn a misfit of nothing into.
+const ROUNDED: f64 = 1e-6;
 /// Sweeps over the contacts where these rounds do not end, and the change of a sweep that ends them, relative to the numbers.
 const SWEEPS: usize = 40;
 const UNCHANGED: f64 = 1e-5;
@@ -120,8 +122,12 @@ impl<const N: usize> Sums<N> {
                 misfit += numbers[i].dot(&(self.gain[i][j] * numbers[j]));
             }
         }
-        // Never negative but for rounding.
-        misfit.max(0.0)
+        // Never negative but for rounding. What is more was added and taken away as something else, and tells nothing.
+        if misfit >= -ROUNDED * self.target {
+            misfit.max(0.0)
+        } else {
+            f64::INFINITY
+        }
     }
 
     /// What all contacts but one leave to it.
@@ -275,6 +281,9 @@ impl Prior {
 
     /// The misfit with noise of that variance, twice as a log-likelihood with its sign turned.
     fn weighed(&self, misfit: f64, rows: f64) -> f64 {
+        if misfit.is_infinite() {
+            return misfit;
+        }
         let noise = self.noise(misfit, rows);
         misfit / noise + rows * noise.ln()
     }

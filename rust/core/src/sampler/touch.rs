@@ -55,7 +55,8 @@ impl<const N: usize> ContactPath<'_, N> {
         let Contact { claim, anchor, touch } = contact;
         let Some(surface) = self.surface(claim.link) else { return (*touch, 0.0) };
         let local = measurement.links[claim.link as usize].pose.inverse_transform_point(anchor);
-        let near = surface.closest_point_near(&local, touch.triangle);
+        // Of all points, wherever it touched before: what is added up is the same in any order.
+        let near = surface.closest_point_from(&local, touch.triangle);
         let (distance, normal) = signed(&near, &local);
         let deeper = claim.log_radius.exp() - distance;
         let forces = Forces { first: -normal, spring: -normal * deeper, ..Forces::default() };

@@ -23,8 +23,21 @@ pub struct ClosestPoint {
     pub normal: Vector3<f64>,
     /// Euclidean distance from the query, never negative (m).
     pub distance: f64,
+    /// Whether the query is on the inner side of the surface at `point`, also where that is on an edge or a corner.
+    pub inside: bool,
     /// Index into [`Surface::triangles`](super::Surface::triangles); none on an exact primitive.
     pub triangle: Option<u32>,
+}
+
+impl ClosestPoint {
+    /// No point, farther away than any.
+    pub(crate) const NONE: ClosestPoint = ClosestPoint {
+        point: Vector3::new(f64::NAN, f64::NAN, f64::NAN),
+        normal: Vector3::new(0.0, 0.0, 1.0),
+        distance: f64::INFINITY,
+        inside: false,
+        triangle: None,
+    };
 }
 
 /// One crossing of a line with a surface.

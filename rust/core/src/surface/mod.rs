@@ -12,7 +12,7 @@ mod query;
 mod sample;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub use answers::{ClosestPoint, RayHit, SurfacePoint};
 pub use part::{Geometry, Part};
@@ -136,7 +136,7 @@ impl Surface {
         bound: f64,
         triangle: Option<u32>,
     ) -> (f64, Option<u32>) {
-        let mut best = ClosestPoint { point: *p, normal: Vector3::z(), distance: bound, triangle: None };
+        let mut best = ClosestPoint { distance: bound, ..ClosestPoint::NONE };
         for solid in &self.solids {
             solid.closest_point(p, triangle, &mut best);
         }
@@ -144,12 +144,7 @@ impl Surface {
     }
 
     fn nearest(&self, p: &Vector3<f64>, warm_start: Option<u32>) -> ClosestPoint {
-        let mut best = ClosestPoint {
-            point: Vector3::repeat(f64::NAN),
-            normal: Vector3::z(),
-            distance: f64::INFINITY,
-            triangle: None,
-        };
+        let mut best = ClosestPoint::NONE;
         for solid in &self.solids {
             solid.closest_point(p, warm_start, &mut best);
         }

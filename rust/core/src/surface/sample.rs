@@ -64,12 +64,7 @@ impl Sampler {
             if other == part || !solid.closed() {
                 return true;
             }
-            let mut nearest = ClosestPoint {
-                point: sample.point,
-                normal: Vector3::zeros(),
-                distance: f64::INFINITY,
-                triangle: None,
-            };
+            let mut nearest = ClosestPoint::NONE;
             solid.closest_point(&sample.point, None, &mut nearest);
             if nearest.distance > self.tolerance {
                 return !solid.contains(&sample.point, self.tolerance);

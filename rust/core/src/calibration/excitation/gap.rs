@@ -64,8 +64,7 @@ impl Gap<'_> {
             if (point - center).norm() > radius {
                 return false;
             }
-            let near = self.surfaces[1].closest_point(&point);
-            (point - near.point).dot(&near.normal) < 0.0
+            self.surfaces[1].closest_point(&point).inside
         });
         samples > 0 && inside.count() as f64 >= INSIDE_SHARE * samples as f64
     }

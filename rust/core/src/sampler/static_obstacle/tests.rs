@@ -3,6 +3,10 @@ use nalgebra::Vector3;
 use super::super::hypothesis::Hypothesis;
 use super::super::path::ContactPath;
 use super::*;
+use crate::robot::RobotDescription;
+use crate::spatial::Pose;
+use crate::surface::tests::meshes::cells;
+use crate::surface::{Geometry, Part};
 use crate::torque::ForceModel;
 
 const RADIUS: f64 = 0.05;
@@ -19,7 +23,10 @@ struct Scene {
 
 impl Scene {
     fn new(link: usize, place: f64) -> Self {
-        let robot = Arc::new(Robot::example_arm());
+        Self::of(Arc::new(Robot::example_arm()), link, place)
+    }
+
+    fn of(robot: Arc<Robot>, link: usize, place: f64) -> Self {
         let surface = robot.links()[link].surface.clone().expect("a surface");
         let points = surface.sample(64, 3);
         let at = points[(64.0 * place) as usize];
@@ -122,9 +129,22 @@ fn answers_are_the_same_on_any_number_of_threads() {
     assert!(run(1) == run(2));
 }
 
+/// The example arm with links that are forks: two prongs of 0.24 m on a foot, 0.02 m apart.
+fn forked_arm() -> Arc<Robot> {
+    let prongs = [-1, 1].into_iter().flat_map(|x| (0..12).map(move |z| [x, 0, z]));
+    let (vertices, triangles) = cells(&prongs.chain([[0, 0, 0]]).collect::<Vec<_>>(), 0.02);
+    let vertices: Vec<[f64; 3]> = vertices.into_iter().map(Into::into).collect();
+    let mut description = RobotDescription::example_arm();
+    for link in &mut description.links {
+        let geometry = Geometry::Mesh { vertices: vertices.clone(), triangles: triangles.clone() };
+        link.geometry = vec![Part { geometry, pose: Pose::identity() }];
+    }
+    Arc::new(Robot::new(description).expect("a valid description"))
+}
+
 /// Of two contacts at most, with room for five poses.
-fn with_a_short_window(friction: f64) -> (Scene, StaticObstacleSampler) {
-    let scene = Scene::new(5, 0.2);
+fn with_a_short_window(robot: Arc<Robot>, friction: f64) -> (Scene, StaticObstacleSampler) {
+    let scene = Scene::of(robot, 5, 0.2);
     let options = SamplerOptions {
         particles: 300,
         window: 5,
@@ -137,30 +157,43 @@ fn with_a_short_window(friction: f64) -> (Scene, StaticObstacleSampler) {
 }
 
 /// Hypotheses of two contacts here and there.
-fn ten(path: &ContactPath<'_, 2>) -> Vec<Hypothesis<2>> {
-    let claims =
-        |k| [k, 7 * k + 3].map(|place| path.claim(ContactModel::Obstacle, place, 0.01 * place as f64));
-    (0..10).filter_map(|k| path.make(claims(k), None)).collect()
+fn hundred(path: &ContactPath<'_, 2>) -> Vec<Hypothesis<2>> {
+    let claims = |k: usize| {
+        [k, 7 * k + 3].map(|place| path.claim(ContactModel::Obstacle, place, 0.01 * (place % 100) as f64))
+    };
+    (0..100).filter_map(|k| path.make(claims(k), None)).collect()
 }
 
 #[test]
 fn a_window_that_is_full_forgets_the_oldest() {
-    let (scene, mut sampler) = with_a_short_window(0.0);
+    forgets_the_oldest(Arc::new(Robot::example_arm()), 1.0);
+}
+
+#[test]
+fn it_is_forgotten_also_where_a_contact_jumps_from_one_part_of_a_link_to_another() {
+    forgets_the_oldest(forked_arm(), 10.0);
+}
+
+/// Where motions are so many times as large as those of a scene.
+fn forgets_the_oldest(robot: Arc<Robot>, scale: f64) {
+    let (scene, mut sampler) = with_a_short_window(robot, 0.0);
     let mut hypotheses = vec![];
     for tick in 0..20 {
-        let q = scene.pose(tick);
-        let Some((torque, _)) = scene.at(&q) else { continue };
+        let (small, start) = (scene.pose(tick), scene.pose(0));
+        let q: Vec<f64> = small.iter().zip(&start).map(|(q, start)| start + scale * (q - start)).collect();
+        // What torques are measured is no matter.
+        let (torque, _) = scene.at(&start).expect("a contact");
         sampler.update(&q, &torque, None).expect("valid input");
         assert!(sampler.measurements.len() <= 5);
         let path = path::<2>(&sampler);
         if hypotheses.is_empty() {
-            hypotheses = ten(&path);
+            hypotheses = hundred(&path);
         } else {
             hypotheses.iter_mut().for_each(|hypothesis| path.follow(hypothesis));
         }
     }
     // What was added and taken away is what is there.
-    assert_eq!(hypotheses.len(), 10);
+    assert_eq!(hypotheses.len(), 100);
     for hypothesis in &hypotheses {
         let anew = path(&sampler).make(hypothesis.contacts.map(|contact| contact.claim), None);
         let anew = anew.expect("a surface");
@@ -176,7 +209,7 @@ fn path<const N: usize>(sampler: &StaticObstacleSampler) -> ContactPath<'_, N> {
 
 #[test]
 fn what_was_known_before_a_measurement_is_known_of_any_hypothesis_with_friction() {
-    let (scene, mut sampler) = with_a_short_window(0.3);
+    let (scene, mut sampler) = with_a_short_window(Arc::new(Robot::example_arm()), 0.3);
     let mut known = vec![];
     let mut compared = 0;
     for tick in 0..20 {
@@ -185,7 +218,7 @@ fn what_was_known_before_a_measurement_is_known_of_any_hypothesis_with_friction(
         sampler.update(&q, &torque, None).expect("valid input");
         let path = path::<2>(&sampler);
         if known.is_empty() {
-            known = ten(&path);
+            known = hundred(&path);
             continue;
         }
         for hypothesis in &mut known {

@@ -36,14 +36,20 @@ impl Mesh {
         let repaired = repair::repair(vertices, triangles, remarks)?;
         let (vertices, triangles) = (repaired.vertices, repaired.triangles);
         let all: Vec<[Vector3<f64>; 3]> = triangles.iter().map(|t| t.map(|v| vertices[v as usize])).collect();
-        let normals = all
+        let normals: Vec<Vector3<f64>> = all
             .iter()
             .map(|[a, b, c]| (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_else(Vector3::z))
             .collect();
         let (tree, order) = Tree::new(&all);
         let corners = order.iter().map(|&id| all[id as usize]).collect();
-        let neighbours = Neighbours::new(&vertices, &triangles);
+        let neighbours = Neighbours::new(&vertices, &triangles, &normals);
         Ok(Mesh { vertices, triangles, normals, corners, order, tree, neighbours, closed: repaired.closed })
+    }
+
+    /// The corners of triangle `id`.
+    #[inline]
+    pub fn corners_of(&self, id: usize) -> [Vector3<f64>; 3] {
+        self.triangles[id].map(|v| self.vertices[v as usize])
     }
 }
 

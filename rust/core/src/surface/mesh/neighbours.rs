@@ -15,6 +15,8 @@ pub(crate) struct Neighbours {
     /// Where in `fans` each vertex' triangles begin; one entry more than vertices.
     first: Vec<u32>,
     fans: Vec<u32>,
+    /// Of each vertex: the sum of its triangles' unit normals, each times its angle there (rad).
+    pub normals: Vec<Vector3<f64>>,
     pub faces: Vec<Face>,
 }
 
@@ -36,7 +38,8 @@ impl Face {
 }
 
 impl Neighbours {
-    pub fn new(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Self {
+    /// Of triangles with these unit normals.
+    pub fn new(points: &[Vector3<f64>], triangles: &[[u32; 3]], faces: &[Vector3<f64>]) -> Self {
         let vertices = points.len();
         let mut first = vec![0u32; vertices + 1];
         triangles.iter().flatten().for_each(|&v| first[v as usize + 1] += 1);
@@ -63,9 +66,17 @@ impl Neighbours {
                 }
             }
         }
+        let mut normals = vec![Vector3::zeros(); vertices];
+        for (triangle, normal) in triangles.iter().zip(faces) {
+            for k in 0..3 {
+                let [at, next, last] = [k, k + 1, k + 2].map(|k| triangle[k % 3] as usize);
+                let (one, other) = (points[next] - points[at], points[last] - points[at]);
+                normals[at] += normal * one.angle(&other);
+            }
+        }
         let faces =
             triangles.iter().map(|triangle| Face::new(triangle.map(|v| points[v as usize]))).collect();
-        Neighbours { across, first, fans, faces }
+        Neighbours { across, first, fans, normals, faces }
     }
 
     /// The triangles round a vertex.

@@ -116,6 +116,7 @@ impl Placed {
                 point: self.pose.transform_point(&nearest.point),
                 normal: self.pose.rotation * nearest.normal,
                 distance,
+                inside: nearest.signed_distance < 0.0,
                 triangle: None,
             };
         }

@@ -22,7 +22,7 @@ impl Mesh {
         let mut nearest = best.distance * best.distance;
         let mut found = None;
         if let Some(id) = hint {
-            let point = triangle::closest(p, &self.triangles[id].map(|v| self.vertices[v as usize]));
+            let point = triangle::closest(p, &self.corners_of(id));
             let squared = (point - p).norm_squared();
             if squared < nearest {
                 nearest = squared;
@@ -63,10 +63,12 @@ impl Mesh {
             }
         }
         if let Some((point, id)) = found {
+            let feature = triangle::closest_feature(p, &self.corners_of(id)).1;
             *best = ClosestPoint {
                 point,
                 normal: self.normals[id],
                 distance: nearest.sqrt(),
+                inside: self.is_inner_side(&(p - point), id, feature),
                 triangle: Some((first + id) as u32),
             };
         }

@@ -54,6 +54,7 @@ impl Mesh {
                         point,
                         normal: self.normals[id],
                         distance: squared.sqrt(),
+                        inside: self.is_inner_side(&(p - point), id, feature),
                         triangle: Some((first + id) as u32),
                     })
                 }
@@ -91,6 +92,6 @@ impl Mesh {
             let normal = &self.normals[id];
             return (p - normal * normal.dot(&apart), Feature::Face);
         }
-        closest_feature(p, &self.triangles[id].map(|v| self.vertices[v as usize]))
+        closest_feature(p, &self.corners_of(id))
     }
 }

@@ -21,8 +21,7 @@ impl Mesh {
         if depth <= 0 {
             return false;
         }
-        let mut nearest =
-            ClosestPoint { point: *p, normal: Vector3::zeros(), distance: f64::INFINITY, triangle: None };
+        let mut nearest = ClosestPoint::NONE;
         self.closest_point(p, None, 0, &mut nearest);
         nearest.distance > tolerance
     }

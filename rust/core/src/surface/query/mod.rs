@@ -7,5 +7,6 @@ mod descent;
 mod inside;
 mod line;
 mod rays;
+mod side;
 pub(crate) mod triangle;
 mod union;

@@ -5,10 +5,11 @@ mod crowded;
 #[cfg(feature = "mesh-files")]
 mod files;
 mod large;
-mod meshes;
+pub(crate) mod meshes;
 mod primitives;
 mod repairs;
 mod samples;
+mod sides;
 mod trees;
 mod unions;
 mod watertight;
