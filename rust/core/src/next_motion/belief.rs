@@ -222,7 +222,7 @@ impl Believed<'_> {
         let mut radius = low * (high / low).powf(self.random.fork(RADII).fork(k).uniform(RADIUS));
         let triangle = at.triangle.or_else(|| surface.closest_point(&at.point).triangle);
         let mut local = at.point + at.normal * radius;
-        let mut near = surface.closest_point_near(&local, triangle);
+        let mut near = surface.closest_point_from(&local, triangle);
         // A larger obstacle would touch the link elsewhere first.
         for _ in 0..SHRINKINGS {
             if (near.point - at.point).norm() < SAME_POINT {
@@ -230,7 +230,7 @@ impl Believed<'_> {
             }
             radius *= 0.5;
             local = at.point + at.normal * radius;
-            near = surface.closest_point_near(&local, triangle);
+            near = surface.closest_point_from(&local, triangle);
         }
         let pose = self.here.pose(*link);
         Some(Obstacle {

@@ -58,7 +58,7 @@ impl<'a> Prediction<'a> {
     pub fn touch(&self, obstacle: &Obstacle, triangle: Option<u32>) -> Option<Touch> {
         let surface = self.surface(obstacle.link)?;
         let local = self.pose(obstacle.link).inverse_transform_point(&obstacle.centre);
-        let near = surface.closest_point_near(&local, triangle);
+        let near = surface.closest_point_from(&local, triangle);
         let (distance, normal) = signed(&near, &local);
         let deeper = obstacle.distance - distance;
         Some(Touch { point: near.point, normal, triangle: near.triangle, deeper })

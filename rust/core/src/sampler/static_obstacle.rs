@@ -28,7 +28,7 @@ const RELEASE: f64 = 1.0 / 3.0;
 /// Share of hypotheses that stay effective from step to step.
 const EFFECTIVE: f64 = 0.5;
 /// Moves of a particle each time particles are drawn anew, where there are few poses, at most; and how often that is done at least.
-const MOST_MOVES: usize = 6;
+const MOST_MOVES: usize = 4;
 const LEAST_STEPS: usize = 4;
 /// Errors of torque may be so many times as large as is stated.
 const GRANTED: f64 = 3.0;
