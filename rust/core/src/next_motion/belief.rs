@@ -180,7 +180,7 @@ impl Believed<'_> {
         if surface.hides(&near.point, near.triangle) {
             return None;
         }
-        let at = SurfacePoint { point: near.point, normal: near.normal, triangle: near.triangle };
+        let at = near.into();
         let (force, misfit) = match self.torque {
             Some(torque) => self.here.fit(link, &at, torque, deviation),
             None => {

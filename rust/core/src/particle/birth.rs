@@ -104,18 +104,21 @@ impl Birth<'_> {
     /// Particle `number` of `count`, of which every place has as many as every other.
     pub fn evenly(&self, particles: &mut Slice<'_>, k: usize, number: usize, count: usize) {
         let place = (number as u128 * self.births.places() as u128 / count as u128) as usize;
-        self.make(particles, k, number, place);
+        // Places are drawn at random themselves, and each has one particle at most.
+        let apart = if self.births.places() < count { self.births.spacing } else { 0.0 };
+        self.make(particles, k, number, place, apart);
     }
 
-    /// Particle `number`, at a place chosen at random.
+    /// Particle `number`, near a place chosen at random.
     pub fn anywhere(&self, particles: &mut Slice<'_>, k: usize, number: usize) {
         let share = self.random.uniform(DRAWS * number as u64 + PLACE_DRAW);
-        self.make(particles, k, number, (share * self.births.places() as f64) as usize);
+        let place = (share * self.births.places() as f64) as usize;
+        self.make(particles, k, number, place, self.births.spacing);
     }
 
-    /// Makes particle k: near a place, in touch with an obstacle, with the force that explains the measured torque best.
-    fn make(&self, particles: &mut Slice<'_>, k: usize, number: usize, place: usize) {
-        let Births { places, spacing, log_stiffness, log_radius, sampled, .. } = self.births;
+    /// Makes particle k: so far from a place [m], in touch with an obstacle, with the force that explains the measured torque best.
+    fn make(&self, particles: &mut Slice<'_>, k: usize, number: usize, place: usize, apart: f64) {
+        let Births { places, log_stiffness, log_radius, sampled, .. } = self.births;
         let Some((link, at)) = places.get(place) else { return };
         let Some(surface) = self.robot.links()[*link as usize].surface.as_ref() else { return };
         let first = DRAWS * number as u64;
@@ -124,24 +127,28 @@ impl Birth<'_> {
         };
         let radius = log_uniform(log_radius, RADIUS_DRAW);
         let stiffness = log_uniform(log_stiffness, STIFFNESS_DRAW);
-        let [along, beside] = self.random.normals(first + ASIDE_DRAW);
-        let aside = tangent(&at.normal, along * spacing, beside * spacing);
-        let centre = at.point + at.normal * radius + aside;
-        let (near, distance, normal) = if self.motion == Motion::Curvature {
-            let near = surface.closest_point_near(&centre, at.triangle);
-            let (distance, normal) = signed(&near, &centre);
-            (near, distance, normal)
-        } else {
-            let near = surface.closest_point_near(&(at.point + aside), at.triangle);
-            (near, radius, near.normal)
-        };
+        let mut centre = at.point + at.normal * radius;
+        let mut touch = (*at, radius);
+        if apart > 0.0 {
+            let [along, beside] = self.random.moderate(first + ASIDE_DRAW);
+            let aside = tangent(&at.normal, along * apart, beside * apart);
+            centre += aside;
+            touch = if self.motion == Motion::Curvature {
+                let near = surface.closest_point_near(&centre, at.triangle);
+                let (distance, normal) = signed(&near, &centre);
+                (SurfacePoint { normal, ..near.into() }, distance)
+            } else {
+                (surface.closest_point_near(&(at.point + aside), at.triangle).into(), radius)
+            };
+        }
+        let (touch, distance) = touch;
         particles.link[k] = *link;
         particles.centre[k] = self.instant.pose(*link as usize).transform_point(&centre);
         particles.distance[k] = distance;
         particles.log_weight[k] = 0.0;
         particles.stiffness[k] = stiffness;
         particles.cross_variance[k] = 0.0;
-        put(particles, k, &near, normal);
+        put(particles, k, &touch);
         // First without friction, whose limit is the force's.
         particles.force[k] = 0.0;
         let bare = self.response_model.apply(self.instant, particles, k);
@@ -156,7 +163,9 @@ impl Birth<'_> {
             particles.force_variance[k] = deviation.powi(2);
             particles.stiffness_variance[k] = (DOUBT * stiffness).powi(2);
         }
-        self.response_model.apply(self.instant, particles, k);
+        if self.response_model.force_model.deviation_across(particles.force[k]).is_some() {
+            self.response_model.apply(self.instant, particles, k);
+        }
     }
 }
 

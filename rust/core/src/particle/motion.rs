@@ -9,7 +9,7 @@ use super::response::ResponseModel;
 use super::step_noise::StepNoise;
 use crate::math::random::Stream;
 use crate::robot::Robot;
-use crate::surface::{ClosestPoint, Surface};
+use crate::surface::{ClosestPoint, Surface, SurfacePoint};
 
 /// Random numbers a particle and step uses at most.
 const DRAWS: u64 = 4;
@@ -94,7 +94,7 @@ impl Move {
         let (distance, normal) = signed(&near, &local);
         let change = particles.distance[k] - distance;
         particles.distance[k] = distance;
-        put(particles, k, &near, normal);
+        put(particles, k, &SurfacePoint { normal, ..near.into() });
         particles.force[k] += change * particles.stiffness[k];
         let [cross, stiffness] = [particles.cross_variance[k], particles.stiffness_variance[k]];
         particles.force_variance[k] += 2.0 * change * cross
@@ -117,7 +117,7 @@ impl Move {
         let fixed = instant.before(link).transform_point(&particles.point[k]);
         let near = surface
             .closest_point_near(&instant.pose(link).inverse_transform_point(&fixed), particles.triangle[k]);
-        put(particles, k, &near, near.normal);
+        put(particles, k, &near.into());
         self.stay_on_link(surface, number, particles, k);
     }
 
@@ -147,8 +147,8 @@ pub(crate) fn signed(near: &ClosestPoint, local: &Vector3<f64>) -> (f64, Vector3
 }
 
 /// Puts a particle at a point of its link's surface.
-pub(super) fn put(particles: &mut Slice<'_>, k: usize, near: &ClosestPoint, normal: Vector3<f64>) {
-    particles.point[k] = near.point;
-    particles.normal[k] = normal;
-    particles.triangle[k] = near.triangle;
+pub(super) fn put(particles: &mut Slice<'_>, k: usize, touch: &SurfacePoint) {
+    particles.point[k] = touch.point;
+    particles.normal[k] = touch.normal;
+    particles.triangle[k] = touch.triangle;
 }

@@ -10,6 +10,7 @@ use super::response::ResponseModel;
 use crate::math::random::Stream;
 use crate::robot::Robot;
 use crate::spatial::basis::across;
+use crate::surface::SurfacePoint;
 
 /// Random numbers a particle uses at most.
 const DRAWS: u64 = 4;
@@ -49,7 +50,7 @@ impl Rejuvenation {
                 continue;
             }
             let pose = instant.pose(particles.link[k] as usize);
-            let [along, beside] = self.random.normals(number as u64 * DRAWS);
+            let [along, beside] = self.random.moderate(number as u64 * DRAWS);
             let aside = tangent(&particles.normal[k], along * self.apart, beside * self.apart);
             if self.motion == Motion::Curvature {
                 let local = pose.inverse_transform_point(&particles.centre[k]) + aside;
@@ -57,10 +58,10 @@ impl Rejuvenation {
                 let (distance, normal) = signed(&near, &local);
                 particles.centre[k] = pose.transform_point(&local);
                 particles.distance[k] = distance;
-                put(particles, k, &near, normal);
+                put(particles, k, &SurfacePoint { normal, ..near.into() });
             } else {
                 let near = surface.closest_point_near(&(particles.point[k] + aside), particles.triangle[k]);
-                put(particles, k, &near, near.normal);
+                put(particles, k, &near.into());
             }
             if !self.keep_torque {
                 continue;

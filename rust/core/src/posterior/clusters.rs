@@ -22,12 +22,9 @@ const CLIMB: usize = 8;
 
 #[derive(Debug, Clone)]
 struct Cell {
-    key: u64,
     weight: f64,
     /// Weighted sum of points, link frame [m].
     sum: Vector3<f64>,
-    /// Another cell of the cluster, in the end its root; itself at the root.
-    parent: u32,
     /// Of the cluster, at its root.
     cluster: Moments,
 }
@@ -36,8 +33,14 @@ struct Cell {
 #[derive(Debug, Clone)]
 pub(crate) struct Clusters {
     slots: Vec<u32>,
+    /// One a cell. What is searched through stands by itself: cells are large.
+    keys: Vec<u64>,
+    /// Another cell of the cluster, in the end its root; itself at the root.
+    parents: Vec<u32>,
     cells: Vec<Cell>,
     roots: Vec<u32>,
+    /// Cells of one cluster.
+    members: Vec<u32>,
     /// One a link of the robot.
     links: Vec<Moments>,
     pub found: Vec<Mode>,
@@ -47,15 +50,19 @@ pub(crate) struct Clusters {
 
 impl Clusters {
     /// Memory that one sample takes at most [bytes].
-    pub const SIZE: usize = std::mem::size_of::<Cell>() + 5 * std::mem::size_of::<u32>();
+    pub const SIZE: usize =
+        std::mem::size_of::<Cell>() + std::mem::size_of::<u64>() + 7 * std::mem::size_of::<u32>();
 
     /// # Errors
     /// [`Error::Memory`](crate::Error::Memory) where there is no space for so many samples.
     pub fn new(samples: usize, links: usize) -> Result<Self> {
         Ok(Clusters {
             slots: filled(EMPTY, (2 * samples).next_power_of_two())?,
+            keys: space(samples)?,
+            parents: space(samples)?,
             cells: space(samples)?,
             roots: space(samples)?,
+            members: space(samples)?,
             links: vec![Moments::default(); links],
             found: Vec::with_capacity(MOST_MODES),
             spread: 0.0,
@@ -81,6 +88,8 @@ impl Clusters {
     /// Finds the modes of weighted samples (the weights sum to one), best first.
     pub fn find(&mut self, robot: &Robot, frames: &Frames, samples: &impl ContactSamples, weights: &[f64]) {
         self.slots.fill(EMPTY);
+        self.keys.clear();
+        self.parents.clear();
         self.cells.clear();
         self.links.fill(Moments::default());
         for (k, &weight) in weights.iter().enumerate() {
@@ -93,8 +102,8 @@ impl Clusters {
                 cell.cluster.add(&sample, weight);
             }
         }
-        for cell in &self.cells {
-            self.links[(cell.key >> 48) as usize].join(&cell.cluster);
+        for (key, cell) in self.keys.iter().zip(&self.cells) {
+            self.links[link_of(*key)].join(&cell.cluster);
         }
         self.connect();
         self.rank();
@@ -118,16 +127,12 @@ impl Clusters {
                 EMPTY => {
                     let index = self.cells.len();
                     self.slots[slot] = index as u32;
-                    self.cells.push(Cell {
-                        key,
-                        weight: 0.0,
-                        sum: Vector3::zeros(),
-                        parent: index as u32,
-                        cluster: Moments::default(),
-                    });
+                    self.keys.push(key);
+                    self.parents.push(index as u32);
+                    self.cells.push(Cell { weight: 0.0, sum: Vector3::zeros(), cluster: Moments::default() });
                     return index;
                 }
-                index if self.cells[index as usize].key == key => return index as usize,
+                index if self.keys[index as usize] == key => return index as usize,
                 _ => slot = (slot + 1) & mask,
             }
         }
@@ -139,7 +144,7 @@ impl Clusters {
         loop {
             match self.slots[slot] {
                 EMPTY => return None,
-                index if self.cells[index as usize].key == key => return Some(index as usize),
+                index if self.keys[index as usize] == key => return Some(index as usize),
                 _ => slot = (slot + 1) & mask,
             }
         }
@@ -147,9 +152,9 @@ impl Clusters {
 
     /// The cluster's root; halves the path to it, so that a long chain of cells is not walked twice.
     fn root(&mut self, mut cell: u32) -> u32 {
-        while self.cells[cell as usize].parent != cell {
-            let above = self.cells[cell as usize].parent;
-            self.cells[cell as usize].parent = self.cells[above as usize].parent;
+        while self.parents[cell as usize] != cell {
+            let above = self.parents[cell as usize];
+            self.parents[cell as usize] = self.parents[above as usize];
             cell = above;
         }
         cell
@@ -163,7 +168,7 @@ impl Clusters {
             if self.cells[index].weight < cutoff {
                 continue;
             }
-            let key = self.cells[index].key;
+            let key = self.keys[index];
             // Half of the neighbours: the others find this one.
             for offset in NEIGHBOURS {
                 let Some(other) = self.known(key.wrapping_add(offset)) else { continue };
@@ -178,21 +183,21 @@ impl Clusters {
                     } else {
                         (b, a)
                     };
-                    self.cells[child as usize].parent = root;
+                    self.parents[child as usize] = root;
                     let joined = self.cells[child as usize].cluster;
                     self.cells[root as usize].cluster.join(&joined);
                 }
             }
         }
         for index in 0..self.cells.len() as u32 {
-            self.cells[index as usize].parent = self.root(index);
+            self.parents[index as usize] = self.root(index);
         }
     }
 
     fn rank(&mut self) {
         self.roots.clear();
         for index in 0..self.cells.len() as u32 {
-            if self.cells[index as usize].parent == index {
+            if self.parents[index as usize] == index {
                 self.roots.push(index);
             }
         }
@@ -206,12 +211,11 @@ impl Clusters {
         self.roots[..reported].sort_unstable_by(|a, b| weight(b).total_cmp(&weight(a)).then(a.cmp(b)));
     }
 
-    fn describe(&self, robot: &Robot, frames: &Frames, root: u32) -> Mode {
-        let cell = &self.cells[root as usize];
-        let link = (cell.key >> 48) as usize;
-        let moments = &cell.cluster;
-        let spread = moments.spread();
+    fn describe(&mut self, robot: &Robot, frames: &Frames, root: u32) -> Mode {
+        let link = link_of(self.keys[root as usize]);
+        let spread = self.cells[root as usize].cluster.spread();
         let densest = self.climb(root, spread);
+        let moments = &self.cells[root as usize].cluster;
         let pose = &frames.links[link].pose;
         let mut point = densest;
         let mut normal = moments.normal / moments.weight;
@@ -240,21 +244,22 @@ impl Clusters {
 
     /// Where a cluster is densest: mean shift over its cells (Cheng 1995), from the heaviest. The kernel is as wide as
     /// the cluster, so that a compact one gives its mean.
-    fn climb(&self, root: u32, spread: f64) -> Vector3<f64> {
-        let start = &self.cells[root as usize];
+    fn climb(&mut self, root: u32, spread: f64) -> Vector3<f64> {
+        let Self { parents, cells, members, .. } = self;
+        let start = &cells[root as usize];
         if spread < CELL {
             return start.cluster.point / start.cluster.weight;
         }
+        members.clear();
+        members.extend((0..parents.len() as u32).filter(|cell| parents[*cell as usize] == root));
         let mut at = start.sum / start.weight;
         for _ in 0..CLIMB {
             let (mut sum, mut total) = (Vector3::zeros(), 0.0);
-            for cell in &self.cells {
-                if cell.parent == root {
-                    let mean = cell.sum / cell.weight;
-                    let weight = cell.weight * (-0.5 * (mean - at).norm_squared() / (spread * spread)).exp();
-                    sum += mean * weight;
-                    total += weight;
-                }
+            for cell in members.iter().map(|member| &cells[*member as usize]) {
+                let mean = cell.sum / cell.weight;
+                let weight = cell.weight * (-0.5 * (mean - at).norm_squared() / (spread * spread)).exp();
+                sum += mean * weight;
+                total += weight;
             }
             at = sum / total;
         }
@@ -269,6 +274,10 @@ fn cell_of(point: &Vector3<f64>) -> [u64; 3] {
 
 fn key(link: usize, [x, y, z]: &[u64; 3]) -> u64 {
     (link as u64) << 48 | x << 32 | y << 16 | z
+}
+
+fn link_of(key: u64) -> usize {
+    (key >> 48) as usize
 }
 
 fn hash(key: u64) -> usize {

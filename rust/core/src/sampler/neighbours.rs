@@ -9,7 +9,6 @@ use super::hypothesis::Claim;
 use super::path::ContactPath;
 use crate::math::random::Stream;
 use crate::robot::Robot;
-use crate::surface::SurfacePoint;
 
 /// How far the place moves: the logarithm of the standard deviation along each axis is uniform between those of these (m).
 const ASIDE: [f64; 2] = [2e-3, 5e-2];
@@ -54,7 +53,7 @@ impl<const N: usize> ContactPath<'_, N> {
             return None;
         }
         claim.link = link;
-        claim.place = SurfacePoint { point: near.point, normal: near.normal, triangle: near.triangle };
+        claim.place = near.into();
         Some((claim, (own.len() as f64 / self.neighbours.beside(link).len() as f64).ln()))
     }
 }

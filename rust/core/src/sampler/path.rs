@@ -196,7 +196,7 @@ impl<const N: usize> ContactPath<'_, N> {
             if surface.hides(&near.point, near.triangle) {
                 return None;
             }
-            claim.place = SurfacePoint { point: near.point, normal: near.normal, triangle: near.triangle };
+            claim.place = near.into();
         }
         Some(claim)
     }

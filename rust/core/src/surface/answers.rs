@@ -95,3 +95,9 @@ pub struct SurfacePoint {
     /// Index into [`Surface::triangles`](super::Surface::triangles); none on an exact primitive.
     pub triangle: Option<u32>,
 }
+
+impl From<ClosestPoint> for SurfacePoint {
+    fn from(near: ClosestPoint) -> Self {
+        SurfacePoint { point: near.point, normal: near.normal, triangle: near.triangle }
+    }
+}

@@ -143,7 +143,7 @@ fn projected(
 ) -> ([SurfacePoint; LANES], PlaceBlock) {
     let places = points.map(|point| {
         let near = surface.closest_point_near(&point, triangle);
-        SurfacePoint { point: near.point, normal: near.normal, triangle: near.triangle }
+        near.into()
     });
     (places, PlaceBlock::new(&places.map(|place| (place.point, place.normal, area))))
 }
