@@ -2134,7 +2134,7 @@ class StaticObstacleSampler:
         forgetting_time: Time after which a measurement counts for a part in e of what it did when it was new [s], so that
             an obstacle that creeps is followed. None for obstacles that stay.
         moves: Moves of each particle in an update at most where the window is full, 1 to 1000; more where it is not, for the
-            same work.
+            same work. Twice as many of particles of several contacts.
         measurement: "normal" (frictionless) or "friction_cone": forces across the normal up to `friction` of it,
             integrated out.
         friction: Coefficient of friction of the cone.
@@ -2174,7 +2174,7 @@ class StaticObstacleSampler:
         max_contacts: int = 1,
         window: int = 40,
         forgetting_time: float | None = None,
-        moves: int = 2,
+        moves: int = 1,
         measurement: Literal["normal", "friction_cone"] = "normal",
         friction: float = 0.5,
         links: Iterable[str] | None = None,

@@ -47,7 +47,7 @@ const LONG: usize = 20_000;
 ///     forgetting_time: Time after which a measurement counts for a part in e of what it did when it was new [s], so that
 ///         an obstacle that creeps is followed. None for obstacles that stay.
 ///     moves: Moves of each particle in an update at most where the window is full, 1 to 1000; more where it is not, for the
-///         same work.
+///         same work. Twice as many of particles of several contacts.
 ///     measurement: "normal" (frictionless) or "friction_cone": forces across the normal up to `friction` of it,
 ///         integrated out.
 ///     friction: Coefficient of friction of the cone.
@@ -100,7 +100,7 @@ impl PyStaticObstacleSampler {
         measurement=Choice::of("normal"), friction=None, links=None, seed=None, force_range=None, stiffness_range=None,
         radius_range=None, threads=None, torque_noise=None, relative_noise=None, torque_threshold=None, noise=None,
         calibration=None),
-        text_signature = "(robot, *, particles=10_000, models='obstacle', max_contacts=1, window=40, forgetting_time=None, moves=2, \
+        text_signature = "(robot, *, particles=10_000, models='obstacle', max_contacts=1, window=40, forgetting_time=None, moves=1, \
             measurement='normal', friction=0.5, links=None, seed=0, force_range=(1, 100), stiffness_range=(3e2, 3e4), \
             radius_range=(5e-3, 1.0), threads=1, torque_noise=0.02, relative_noise=0.03, torque_threshold=0.2, noise=None, \
             calibration=None)")]

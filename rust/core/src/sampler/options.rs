@@ -61,7 +61,8 @@ pub struct SamplerOptions {
     pub torque_threshold: Option<Vec<f64>>,
     /// Errors of the torques, in place of `torque_noise` and `relative_noise`.
     pub noise: Option<NoiseModel>,
-    /// Moves of each particle in an update at most, where the window is full; more where it is not, for the same work.
+    /// Moves of each particle in an update at most, where the window is full; more where it is not, for the same work. Twice as many
+    /// of particles of several contacts.
     pub moves: usize,
     /// How many threads share an update.
     pub threads: usize,
@@ -93,7 +94,7 @@ impl SamplerOptions {
             relative_noise: filter.relative_noise,
             torque_threshold: filter.torque_threshold,
             noise: filter.noise,
-            moves: 2,
+            moves: 1,
             threads: filter.threads,
         }
     }

@@ -27,8 +27,9 @@ use crate::surface::SurfacePoint;
 const RELEASE: f64 = 1.0 / 3.0;
 /// Share of hypotheses that stay effective from step to step.
 const EFFECTIVE: f64 = 0.5;
-/// Moves of a particle each time particles are drawn anew, where there are few poses, at most; and how often that is done at least.
-const MOST_MOVES: usize = 4;
+/// Moves of a particle of one contact, and of several, each time particles are drawn anew, where there are few poses, at most; and how
+/// often that is done at least.
+const MOST_MOVES: [usize; 2] = [3, 6];
 const LEAST_STEPS: usize = 4;
 /// Errors of torque may be so many times as large as is stated.
 const GRANTED: f64 = 3.0;
@@ -366,11 +367,15 @@ impl StaticObstacleSampler {
         let threads = options.threads;
         // The less poses there are, the less work is a move.
         let most_moves = *moves * *window / measurements.len().max(1);
-        let tempering = Tempering {
-            effective_share: EFFECTIVE,
-            moves: (most_moves / LEAST_STEPS).clamp(1, MOST_MOVES),
-            most_moves,
-        };
+        // A place among many is harder to come by than one.
+        let [alone, beside_others] =
+            [(most_moves, MOST_MOVES[0]), (2 * most_moves, MOST_MOVES[1])].map(|(most_moves, at_once)| {
+                Tempering {
+                    effective_share: EFFECTIVE,
+                    moves: (most_moves / LEAST_STEPS).clamp(1, at_once),
+                    most_moves,
+                }
+            });
         let without = |before: f64| -> f64 {
             let of = |measurement: &Measurement| {
                 0.5 * (measurement.now - before * measurement.before) * measurement.target.squared
@@ -378,11 +383,12 @@ impl StaticObstacleSampler {
             measurements.scattered().map(of).sum()
         };
         let poses = measurements.len();
-        let thorough = Tempering { moves: MOST_MOVES, most_moves: SEARCH_MOVES, ..tempering };
+        let thorough = Tempering { moves: MOST_MOVES[1], most_moves: SEARCH_MOVES, ..beside_others };
         let mut weighed = [(0.0, 0.0); MOST_CONTACTS];
         pool.install(|| {
             for (k, population) in populations.iter_mut().enumerate().filter(|(k, _)| followed[*k]) {
                 let course = Course { threads, stop };
+                let tempering = if k > 0 { beside_others } else { alone };
                 let known = population.log_evidence();
                 let mut travelled = population.update(scene, anew, tempering, random.fork(k as u64), course);
                 let mut log_evidence = known + travelled.log_evidence + without(1.0);
