@@ -84,7 +84,7 @@ def test_what_is_no_single_push_is_not_sure(which: str) -> None:
                     wrong += all(np.linalg.norm(estimate.point - point[row]) > 0.05 for point in points)
     assert wrong <= 0.1 * sure, (wrong, sure)
     assert sure <= 0.1 * updates, (sure, updates)
-    # The pushes alone, although noisy. Of 216, on other seeds, too, 207 were explained, and on outer links as many sure.
+    # The pushes alone, although noisy. Of 216 (on other seeds, too) 207 were explained.
     pushes = [
         follow(scene_run(robot, link, seed), 0.1, robot, particles=1000)
         for link in chosen

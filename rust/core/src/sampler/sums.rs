@@ -496,6 +496,24 @@ mod tests {
     }
 
     #[test]
+    fn sums_of_what_was_never_added_tell_nothing() {
+        let fit = |gain: f64, product: f64| SeveralPushes {
+            gain: [[gain]],
+            product: [product],
+            target: 100.0,
+            penalty: 0.0,
+        };
+        let mut sums = Sums::<1>::NONE;
+        sums.add(1.0, &Sums::along(&fit(1.0, 10.0), &[0.0]));
+        sums.add(1.0, &Sums::along(&fit(1.0, 10.0), &[1e-3]));
+        assert!(PRIOR.integrate(&sums).log > -20.0);
+        // The same measurement, but not as it was added.
+        sums.add(-1.0, &Sums::along(&fit(4.0, -5.0), &[2e-3]));
+        assert_eq!(PRIOR.integrate(&sums).log, f64::NEG_INFINITY);
+        assert_eq!(PRIOR.most(&sums, 14.0), f64::NEG_INFINITY);
+    }
+
+    #[test]
     fn forces_and_stiffnesses_of_two_contacts_are_found_also_at_the_ends_of_their_ranges() {
         let found = PRIOR.integrate(&of_two_contacts([12.0, 30.0], [2500.0, 800.0]));
         assert!((found.misfit - 24.0).abs() < 1e-6, "{found:?}");

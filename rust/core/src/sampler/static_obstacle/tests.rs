@@ -133,7 +133,6 @@ fn answers_are_the_same_on_any_number_of_threads() {
 fn forked_arm() -> Arc<Robot> {
     let prongs = [-1, 1].into_iter().flat_map(|x| (0..12).map(move |z| [x, 0, z]));
     let (vertices, triangles) = cells(&prongs.chain([[0, 0, 0]]).collect::<Vec<_>>(), 0.02);
-    let vertices: Vec<[f64; 3]> = vertices.into_iter().map(Into::into).collect();
     let mut description = RobotDescription::example_arm();
     for link in &mut description.links {
         let geometry = Geometry::Mesh { vertices: vertices.clone(), triangles: triangles.clone() };
