@@ -13,6 +13,7 @@ mod friction;
 mod hypothesis;
 mod measurements;
 mod neighbours;
+mod numbers;
 mod options;
 mod order;
 mod particle;

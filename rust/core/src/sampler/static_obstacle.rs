@@ -6,8 +6,9 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use super::hypothesis::ContactModel;
-use super::measurements::{Measurement, Measurements};
+use super::measurements::Measurements;
 use super::neighbours::Neighbours;
+use super::numbers::{Numbers, LEAST_POSES};
 use super::options::SamplerOptions;
 use super::particle::Particle;
 use super::population::{population, Population, Scene};
@@ -18,36 +19,16 @@ use crate::math::chi_square::upper_limit;
 use crate::math::random::Stream;
 use crate::particle::{exposed_places, Event, FilterEstimate, FilterOptions, Instant};
 use crate::posterior::parallel::{Course, Pool};
-use crate::posterior::tempering::Tempering;
 use crate::posterior::{Clusters, MOST_MODES};
 use crate::robot::{LinkIndex, Robot};
 use crate::surface::SurfacePoint;
 
 /// A contact ends below this share of the thresholds at which it begins.
 const RELEASE: f64 = 1.0 / 3.0;
-/// Share of hypotheses that stay effective from step to step.
-const EFFECTIVE: f64 = 0.5;
-/// Moves of a particle of one contact, and of several, each time particles are drawn anew, where there are few poses, at most; and how
-/// often that is done at least.
-const MOST_MOVES: [usize; 2] = [3, 6];
-const LEAST_STEPS: usize = 4;
 /// Errors of torque may be so many times as large as is stated.
 const GRANTED: f64 = 3.0;
 /// A place, a radius, a force and a stiffness.
 const FITTED: usize = 5;
-/// Poses that tell an obstacle that stays from what is none.
-const LEAST_POSES: usize = 4;
-/// Hypotheses of several contacts that leave over so many times the variance of noise, at 99 %, have missed where these are: they are
-/// spread anew with all poses. That is done at so many poses for the first time, and again when there are half as many more; with so
-/// many moves of a particle at most.
-const MISSED: f64 = 2.0;
-const FIRST_SEARCH: usize = 4;
-const SEARCH_MOVES: usize = 100;
-/// How probable one more contact is beforehand, as a share. A contact that is there soon shows by hundreds of nats; what friction and
-/// curvature do beside the model can feign some.
-const ONE_MORE: f64 = 1e-6;
-/// A number of contacts that is less probable is followed no longer.
-const DROPPED: f64 = 1e-12;
 /// A number of contacts that is less probable is not sure.
 const SURE_NUMBER: f64 = 0.8;
 
@@ -91,14 +72,8 @@ pub struct StaticObstacleSampler {
     measurements: Measurements,
     places: Vec<(u32, SurfacePoint)>,
     neighbours: Neighbours,
-    /// Of one contact, two and so on, and which of these are followed.
-    populations: Vec<Box<dyn Population>>,
-    followed: Vec<bool>,
-    /// How many poses there were when each was last spread.
-    searched: Vec<usize>,
-    /// Probability of each, and the most probable.
-    numbers: Vec<f64>,
-    likely: usize,
+    /// Of contacts: one, two and so on.
+    numbers: Numbers,
     clusters: Clusters,
     found: FilterEstimate,
 }
@@ -130,11 +105,7 @@ impl StaticObstacleSampler {
             .map(|contacts| population(contacts, options.particles, scene))
             .collect::<Result<_>>()?;
         Ok(StaticObstacleSampler {
-            populations,
-            followed: vec![true; most],
-            searched: vec![0; most],
-            numbers: vec![0.0; most],
-            likely: 0,
+            numbers: Numbers::new(populations),
             clusters: Clusters::new(options.particles, robot.links().len())?,
             moves: options.moves,
             window: options.window,
@@ -176,7 +147,7 @@ impl StaticObstacleSampler {
         match event {
             Event::None | Event::Lost => {
                 self.found.clear(event);
-                self.numbers.fill(0.0);
+                self.numbers.clear();
             }
             _ => self.follow(event, kept),
         }
@@ -220,8 +191,8 @@ impl StaticObstacleSampler {
         self.gate.reset();
         self.measurements.clear();
         self.found.clear(Event::None);
-        (self.found.updates, self.time, self.likely) = (0, None, 0);
-        self.numbers.fill(0.0);
+        (self.found.updates, self.time) = (0, None);
+        self.numbers.clear();
         self.begin();
         self.found.torque.clear();
     }
@@ -243,12 +214,12 @@ impl StaticObstacleSampler {
 
     /// Probability of one contact, two and so on; all zero without a contact.
     pub fn number_probabilities(&self) -> &[f64] {
-        &self.numbers
+        self.numbers.probabilities()
     }
 
     /// Of the most probable number of contacts.
     fn population(&self) -> &dyn Population {
-        self.populations[self.likely].as_ref()
+        self.numbers.likely()
     }
 
     /// Weights of the particles of the most probable number of contacts, which sum to one.
@@ -298,7 +269,7 @@ impl StaticObstacleSampler {
                 let before = self.population().misfit();
                 let weighed = self.take_in(false, kept);
                 // One more contact, or one less: what is known of the others no longer tells what is measured.
-                if self.populations.len() > 1 && self.surprised(before) {
+                if self.numbers.several() && self.surprised(before) {
                     self.begin();
                     (Event::Changed, self.take_in(true, kept))
                 } else {
@@ -323,7 +294,7 @@ impl StaticObstacleSampler {
         {
             (before[count], count) = (contact.point, count + 1);
         }
-        self.populations.iter_mut().for_each(|population| population.begin(&before[..count]));
+        self.numbers.begin(&before[..count]);
     }
 
     /// Whether all hypotheses leave more of the newest torques over than noise does, though they explained those before.
@@ -331,8 +302,7 @@ impl StaticObstacleSampler {
         let (poses, rows) = (self.measurements.len(), self.instant.torque.len());
         let noise = (before / ((poses - 1) * rows) as f64).max(1.0);
         let limit = GRANTED * GRANTED * upper_limit(rows);
-        let misfits = self.populations.iter().zip(&self.followed).filter(|(_, followed)| **followed);
-        let now = misfits.map(|(population, _)| population.misfit()).fold(f64::INFINITY, f64::min);
+        let now = self.numbers.least_misfit();
         poses > LEAST_POSES && self.found.explained && now - before > noise * limit
     }
 
@@ -340,109 +310,23 @@ impl StaticObstacleSampler {
     fn take_in(&mut self, anew: bool, kept: f64) -> (f64, f64) {
         if anew {
             self.measurements.clear();
-            self.followed.fill(true);
-            self.searched.fill(0);
         }
         self.measurements.take_in(&self.instant, kept);
-        let rows = self.measurements.len() * self.instant.torque.len();
-        let Self {
-            robot,
-            options,
-            models,
-            measurements,
-            populations,
-            followed,
-            searched,
-            moves,
-            window,
-            stop,
-            pool,
-            places,
-            neighbours,
-            found,
-            ..
-        } = self;
-        let random = Stream::new(options.seed).fork(found.updates);
+        let rows = self.instant.torque.len();
+        let Self { robot, options, models, measurements, numbers, stop, pool, places, neighbours, .. } = self;
+        let random = Stream::new(options.seed).fork(self.found.updates);
         let scene = Scene { robot, measurements, options, models, places, neighbours };
-        let threads = options.threads;
+        let course = Course { threads: options.threads, stop };
         // The less poses there are, the less work is a move.
-        let most_moves = *moves * *window / measurements.len().max(1);
-        // A place among many is harder to come by than one.
-        let [alone, beside_others] =
-            [(most_moves, MOST_MOVES[0]), (2 * most_moves, MOST_MOVES[1])].map(|(most_moves, at_once)| {
-                Tempering {
-                    effective_share: EFFECTIVE,
-                    moves: (most_moves / LEAST_STEPS).clamp(1, at_once),
-                    most_moves,
-                }
-            });
-        let without = |before: f64| -> f64 {
-            let of = |measurement: &Measurement| {
-                0.5 * (measurement.now - before * measurement.before) * measurement.target.squared
-            };
-            measurements.scattered().map(of).sum()
-        };
-        let poses = measurements.len();
-        let thorough = Tempering { moves: MOST_MOVES[1], most_moves: SEARCH_MOVES, ..beside_others };
-        let mut weighed = [(0.0, 0.0); MOST_CONTACTS];
-        pool.install(|| {
-            for (k, population) in populations.iter_mut().enumerate().filter(|(k, _)| followed[*k]) {
-                let course = Course { threads, stop };
-                let tempering = if k > 0 { beside_others } else { alone };
-                let known = population.log_evidence();
-                let mut travelled = population.update(scene, anew, tempering, random.fork(k as u64), course);
-                let mut log_evidence = known + travelled.log_evidence + without(1.0);
-                // A single contact was looked for on the whole surface.
-                let due = k > 0 && poses >= FIRST_SEARCH && 2 * poses >= 3 * searched[k];
-                let stopped = || stop.load(Ordering::Relaxed);
-                if due && !stopped() && population.misfit() > MISSED * upper_limit(rows) {
-                    let random = random.fork((MOST_CONTACTS + k) as u64);
-                    travelled = population.update(scene, true, thorough, random, course);
-                    log_evidence = travelled.log_evidence + without(0.0);
-                    // What was broken off is due again.
-                    searched[k] = if stopped() { 0 } else { poses };
-                }
-                weighed[k] = (travelled.effective, log_evidence - known);
-                population.add_log_evidence(weighed[k].1);
-            }
-        });
-        self.choose();
-        weighed[self.likely]
-    }
-
-    /// How probable each number of contacts is.
-    fn choose(&mut self) {
-        let mut logs = [f64::NEG_INFINITY; MOST_CONTACTS];
-        let mut fewer: Option<(f64, f64)> = None;
-        for (k, population) in self.populations.iter().enumerate().filter(|(k, _)| self.followed[*k]) {
-            let greatest = population.greatest_log();
-            // One more contact cannot be more probable than its best hypothesis is likelier than the best without it. Particles that
-            // were led astray take the evidence of few contacts to be less than it is.
-            let most = fewer.map_or(f64::INFINITY, |(log, without)| log + greatest - without);
-            let log = population.log_evidence().min(most);
-            fewer = Some((log, greatest));
-            logs[k] = log + k as f64 * ONE_MORE.ln();
-        }
-        let greatest = logs.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        for (number, log) in self.numbers.iter_mut().zip(logs) {
-            *number = if greatest > f64::NEG_INFINITY { (log - greatest).exp() } else { 1.0 };
-        }
-        let sum: f64 = self.numbers.iter().sum();
-        self.numbers.iter_mut().for_each(|number| *number /= sum);
-        if self.measurements.len() >= LEAST_POSES {
-            let Self { followed, numbers, .. } = self;
-            followed.iter_mut().zip(numbers).for_each(|(followed, number)| *followed &= *number >= DROPPED);
-        }
-        // The least number of those that are as probable.
-        self.likely = (0..self.numbers.len())
-            .rev()
-            .max_by(|a, b| self.numbers[*a].total_cmp(&self.numbers[*b]))
-            .unwrap_or(0);
+        let moves = self.moves * self.window / measurements.len().max(1);
+        let mut weighed = (0.0, 0.0);
+        pool.install(|| weighed = numbers.update(scene, anew, moves, rows, random, course));
+        weighed
     }
 
     fn say(&mut self, event: Event, (effective, log_evidence): (f64, f64)) {
-        let Self { robot, instant, populations, numbers, likely, clusters, found, measurements, .. } = self;
-        let population = &populations[*likely];
+        let Self { robot, instant, numbers, clusters, found, measurements, .. } = self;
+        let population = numbers.likely();
         found.clear(event);
         (found.effective_samples, found.log_evidence) = (effective, log_evidence);
         for contact in 0..population.contacts() {
@@ -459,7 +343,7 @@ impl StaticObstacleSampler {
         found.residual = (misfit / rows as f64).sqrt();
         let fitted = FITTED * population.contacts();
         found.explained = misfit <= GRANTED * GRANTED * upper_limit(rows.saturating_sub(fitted));
-        let unsure = !found.explained || poses < LEAST_POSES || numbers[*likely] < SURE_NUMBER;
+        let unsure = !found.explained || poses < LEAST_POSES || numbers.greatest() < SURE_NUMBER;
         for estimate in found.others.iter_mut().chain([&mut found.estimate]) {
             estimate.ambiguous |= unsure && estimate.contact.is_some();
         }
