@@ -2,6 +2,8 @@
 
 use std::mem::size_of;
 
+use nalgebra::Vector3;
+
 use super::columns::Slice;
 use super::instant::Instant;
 use super::motion::{put, signed};
@@ -127,21 +129,22 @@ impl Birth<'_> {
         };
         let radius = log_uniform(log_radius, RADIUS_DRAW);
         let stiffness = log_uniform(log_stiffness, STIFFNESS_DRAW);
-        let mut centre = at.point + at.normal * radius;
-        let mut touch = (*at, radius);
-        if apart > 0.0 {
+        let aside = if apart > 0.0 {
             let [along, beside] = self.random.moderate(first + ASIDE_DRAW);
-            let aside = tangent(&at.normal, along * apart, beside * apart);
-            centre += aside;
-            touch = if self.motion == Motion::Curvature {
-                let near = surface.closest_point_near(&centre, at.triangle);
-                let (distance, normal) = signed(&near, &centre);
-                (SurfacePoint { normal, ..near.into() }, distance)
-            } else {
-                (surface.closest_point_near(&(at.point + aside), at.triangle).into(), radius)
-            };
-        }
-        let (touch, distance) = touch;
+            tangent(&at.normal, along * apart, beside * apart)
+        } else {
+            Vector3::zeros()
+        };
+        let centre = at.point + at.normal * radius + aside;
+        let (touch, distance) = if apart == 0.0 {
+            (*at, radius)
+        } else if self.motion == Motion::Curvature {
+            let near = surface.closest_point_near(&centre, at.triangle);
+            let (distance, normal) = signed(&near, &centre);
+            (SurfacePoint { normal, ..near.into() }, distance)
+        } else {
+            (surface.closest_point_near(&(at.point + aside), at.triangle).into(), radius)
+        };
         particles.link[k] = *link;
         particles.centre[k] = self.instant.pose(*link as usize).transform_point(&centre);
         particles.distance[k] = distance;
