@@ -78,10 +78,15 @@ impl Numbers {
         self.populations[self.likely].as_ref()
     }
 
-    /// There is no contact.
+    /// There is no contact; the number that was most probable stays that of the particles.
     pub fn clear(&mut self) {
-        self.likely = 0;
         self.probabilities.fill(0.0);
+    }
+
+    /// There never was a contact.
+    pub fn reset(&mut self) {
+        self.clear();
+        self.likely = 0;
     }
 
     /// Contacts begin beside those that were at these points before, or in their place.

@@ -192,7 +192,7 @@ impl StaticObstacleSampler {
         self.measurements.clear();
         self.found.clear(Event::None);
         (self.found.updates, self.time) = (0, None);
-        self.numbers.clear();
+        self.numbers.reset();
         self.begin();
         self.found.torque.clear();
     }

@@ -141,9 +141,6 @@ fn projected(
     area: f64,
     triangle: Option<u32>,
 ) -> ([SurfacePoint; LANES], PlaceBlock) {
-    let places = points.map(|point| {
-        let near = surface.closest_point_near(&point, triangle);
-        near.into()
-    });
+    let places = points.map(|point| SurfacePoint::from(surface.closest_point_near(&point, triangle)));
     (places, PlaceBlock::new(&places.map(|place| (place.point, place.normal, area))))
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::triangle;
+use super::triangle::closest_feature;
 use crate::surface::answers::ClosestPoint;
 use crate::surface::mesh::bvh4::{Child, Node, STACK};
 use crate::surface::mesh::Mesh;
@@ -22,11 +22,11 @@ impl Mesh {
         let mut nearest = best.distance * best.distance;
         let mut found = None;
         if let Some(id) = hint {
-            let point = triangle::closest(p, &self.corners_of(id));
+            let (point, feature) = closest_feature(p, &self.corners_of(id));
             let squared = (point - p).norm_squared();
             if squared < nearest {
                 nearest = squared;
-                found = Some((point, id));
+                found = Some((point, id, feature));
             }
         }
         let local = p - self.tree.center;
@@ -43,12 +43,12 @@ impl Mesh {
             let child = Child(entry as u32);
             if let Some(run) = child.triangles() {
                 for slot in run {
-                    let point = triangle::closest(p, &self.corners[slot]);
+                    let (point, feature) = closest_feature(p, &self.corners[slot]);
                     let squared = (point - p).norm_squared();
                     if squared < nearest {
                         nearest = squared;
                         bound = to_bound(nearest);
-                        found = Some((point, self.order[slot] as usize));
+                        found = Some((point, self.order[slot] as usize, feature));
                     }
                 }
             } else {
@@ -62,8 +62,7 @@ impl Mesh {
                 }
             }
         }
-        if let Some((point, id)) = found {
-            let feature = triangle::closest_feature(p, &self.corners_of(id)).1;
+        if let Some((point, id, feature)) = found {
             *best = ClosestPoint {
                 point,
                 normal: self.normals[id],

@@ -11,12 +11,6 @@ pub(crate) enum Feature {
     Corner(u8),
 }
 
-/// Nearest point of the triangle.
-#[inline]
-pub(crate) fn closest(p: &Vector3<f64>, corners: &[Vector3<f64>; 3]) -> Vector3<f64> {
-    closest_feature(p, corners).0
-}
-
 /// Nearest point of the triangle, and what it lies on (Ericson, Real-Time Collision Detection, 5.1.5: Voronoi regions).
 ///
 /// The areas against the edges are triple products: differences of products of lengths lose slivers' digits.

@@ -94,7 +94,7 @@ fn a_triangle_in_all_its_regions() {
     for _ in 0..2000 {
         let t = [random.vector(), random.vector(), random.vector()];
         let p = random.vector() * 2.0;
-        let got = triangle::closest(&p, &t);
+        let (got, _) = triangle::closest_feature(&p, &t);
         assert!(((got - p).norm() - nearest_on(&p, t)).abs() < 1e-9);
     }
 }
