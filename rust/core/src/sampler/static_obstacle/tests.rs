@@ -293,6 +293,11 @@ fn two_contacts_are_found_together() {
         assert!(error < 0.01, "link {link}: {contact:?} {error}");
     }
     assert!(sampler.number_probabilities()[1] > 0.9, "{:?}", sampler.number_probabilities());
+    // Once they are lost, the particles are still those of two.
+    sampler.update(&first.pose(0), &[0.0; 7], None).expect("valid input");
+    assert_eq!((sampler.contacts(), sampler.number_probabilities()), (2, &[0.0; 2][..]));
+    sampler.reset();
+    assert_eq!(sampler.contacts(), 1);
 }
 
 #[test]
