@@ -105,6 +105,7 @@ ABOVE = (
     "test_identifiability_study",
     "test_next_motion",
     "test_real_arm",
+    "test_particle_filter_contacts",
     "test_several_contacts_study",
     "test_single_contacts",
     "test_vorndamme2017",

@@ -96,7 +96,7 @@ SIGNATURES = {
     "links=None, "
     "seed=0, force_range=(1, 100), stiffness_range=(3e2, 3e4), radius_range=(5e-3, 1.0), "
     "schedule='adaptive', threads=1, likelihood='gaussian', torque_noise=0.02, relative_noise=0.03, "
-    "torque_threshold=0.2, noise=None, calibration=None",
+    "torque_threshold=0.2, noise=None, calibration=None, max_contacts=1",
     "ContactParticleFilter.update": "q, tau_ext, *, time=None",
     "ContactParticleFilter.reset": "",
     "StaticObstacleSampler": "robot, *, particles=10_000, models='obstacle', max_contacts=1, window=40, "

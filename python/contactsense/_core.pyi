@@ -2007,11 +2007,11 @@ class ContactReport:
 
 @final
 class ContactParticleFilter:
-    """Finds one contact anywhere on a robot from joint torques, by particles on its surface (Bimbo 2019).
+    """Finds one contact or several anywhere on a robot from joint torques, by particles on its surface (Bimbo 2019).
 
     Each particle is a hypothesis of link, point, obstacle, force and stiffness; those that predict the torques while the
-    robot makes small motions in contact survive. Frictionless, one contact, a convex obstacle that stays where it is. One
-    thread at a time may use it.
+    robot makes small motions in contact survive. Obstacles are convex and stay where they are. Of several contacts, each has
+    particles of its own (Manuelli and Tedrake 2016). One thread at a time may use it.
 
     Args:
         robot: The robot.
@@ -2038,6 +2038,9 @@ class ContactParticleFilter:
             default three standard deviations at rest where these are more; with `noise` always these.
         noise: A `NoiseModel` in place of `torque_noise` and `relative_noise`.
         calibration: A `Calibration` of this robot, whose noise takes the place of `noise`.
+        max_contacts: Contacts that there may be at the same time, 1 to 4; several only with the Gaussian likelihood. Particles
+            of one more contact are added where the others do not explain the torques at some poses, and dropped when they
+            explain nothing. `estimate.contacts` has an estimate of each. An update takes as long for each contact.
 
     Raises:
         InputError: Names the argument.
@@ -2075,6 +2078,7 @@ class ContactParticleFilter:
         torque_threshold: ArrayLike = 0.2,
         noise: NoiseModel | None = None,
         calibration: Calibration | None = None,
+        max_contacts: int = 1,
     ) -> Self: ...
     @property
     def robot(self) -> Robot:

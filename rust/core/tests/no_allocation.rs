@@ -310,15 +310,21 @@ fn an_update_of_particles_allocates_nothing_on_one_thread() {
     let robot = common::meshed_arm();
     let run = common::ball_run(&robot, "arm_4", 40);
     let idle = vec![0.0; robot.nv()];
-    for threads in [1, 2] {
-        let options = FilterOptions { particles: 3000, threads, ..FilterOptions::default() };
+    for (threads, max_contacts) in [(1, 1), (1, 3), (2, 1)] {
+        let options = FilterOptions { particles: 3000, threads, max_contacts, ..FilterOptions::default() };
+        // No single push adds the same torque to all joints.
+        let aside = if max_contacts > 1 { 3.0 } else { 0.0 };
+        let torques: Vec<Vec<f64>> =
+            run.torques.iter().map(|torque| torque.iter().map(|torque| torque + aside).collect()).collect();
+        let mut most = 0;
         let mut filter = ContactParticleFilter::new(robot.clone(), options).expect("valid options");
         filter.update(&run.poses[0], &run.torques[0]).expect("valid input");
         let mut felt = 0;
         let work = || {
-            for (q, torque) in run.poses.iter().zip(&run.torques) {
+            for (q, torque) in run.poses.iter().zip(&torques) {
                 felt +=
                     usize::from(filter.update(q, torque).expect("valid input").estimate.contact.is_some());
+                most = most.max(filter.contacts().len());
             }
             // The contact ends, and another search begins.
             filter.update(&run.poses[0], &idle).expect("valid input");
@@ -328,6 +334,7 @@ fn an_update_of_particles_allocates_nothing_on_one_thread() {
         let made = allocations(work);
         assert!(made <= allowed, "{threads} threads: {made} allocations");
         assert!(felt > 30, "the contact was felt: {felt}");
+        assert_eq!(most > 1, max_contacts > 1, "contacts were added");
     }
 }
 

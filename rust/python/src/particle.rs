@@ -7,7 +7,7 @@ use contactsense::robot::LinkIndex;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arguments::{sole, Number};
+use crate::arguments::{sole, whole, Number};
 use crate::arrays::Vector;
 use crate::errors::{input, to_python};
 use crate::estimate::PyContactEstimate;
@@ -22,11 +22,11 @@ use crate::signals::with_signals;
 /// From so many particles on an update may take a tenth of a second and more, and Ctrl-C is looked for meanwhile.
 const LONG: usize = 200_000;
 
-/// Finds one contact anywhere on a robot from joint torques, by particles on its surface (Bimbo 2019).
+/// Finds one contact or several anywhere on a robot from joint torques, by particles on its surface (Bimbo 2019).
 ///
 /// Each particle is a hypothesis of link, point, obstacle, force and stiffness; those that predict the torques while the
-/// robot makes small motions in contact survive. Frictionless, one contact, a convex obstacle that stays where it is. One
-/// thread at a time may use it.
+/// robot makes small motions in contact survive. Obstacles are convex and stay where they are. Of several contacts, each has
+/// particles of its own (Manuelli and Tedrake 2016). One thread at a time may use it.
 ///
 /// Args:
 ///     robot: The robot.
@@ -53,6 +53,9 @@ const LONG: usize = 200_000;
 ///         default three standard deviations at rest where these are more; with `noise` always these.
 ///     noise: A `NoiseModel` in place of `torque_noise` and `relative_noise`.
 ///     calibration: A `Calibration` of this robot, whose noise takes the place of `noise`.
+///     max_contacts: Contacts that there may be at the same time, 1 to 4; several only with the Gaussian likelihood. Particles
+///         of one more contact are added where the others do not explain the torques at some poses, and dropped when they
+///         explain nothing. `estimate.contacts` has an estimate of each. An update takes as long for each contact.
 ///
 /// Raises:
 ///     InputError: Names the argument.
@@ -86,10 +89,11 @@ impl PyContactParticleFilter {
     #[new]
     #[pyo3(signature = (robot, *, particles=None, motion=Choice::of("curvature"), measurement=Choice::of("normal"), friction=None, links=None, seed=None,
         force_range=None, stiffness_range=None, radius_range=None, schedule=None, threads=None,
-        likelihood=Choice::of("gaussian"), torque_noise=None, relative_noise=None, torque_threshold=None, noise=None, calibration=None),
+        likelihood=Choice::of("gaussian"), torque_noise=None, relative_noise=None, torque_threshold=None, noise=None, calibration=None,
+        max_contacts=None),
         text_signature = "(robot, *, particles=10_000, motion='curvature', measurement='normal', friction=0.5, links=None, \
             seed=0, force_range=(1, 100), stiffness_range=(3e2, 3e4), radius_range=(5e-3, 1.0), schedule='adaptive', \
-            threads=1, likelihood='gaussian', torque_noise=0.02, relative_noise=0.03, torque_threshold=0.2, noise=None, calibration=None)")]
+            threads=1, likelihood='gaussian', torque_noise=0.02, relative_noise=0.03, torque_threshold=0.2, noise=None, calibration=None, max_contacts=1)")]
     #[allow(clippy::too_many_arguments)] // named in Python
     fn new(
         #[pyo3(from_py_with = robot)] robot: Bound<'_, PyRobot>,
@@ -110,6 +114,7 @@ impl PyContactParticleFilter {
         torque_threshold: Option<&Bound<'_, PyAny>>,
         noise: Option<&Bound<'_, PyAny>>,
         calibration: Option<&Bound<'_, PyAny>>,
+        max_contacts: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let py = robot.py();
         let given = SearchArguments {
@@ -144,10 +149,15 @@ impl PyContactParticleFilter {
                 &[("gaussian", Likelihood::Gaussian), ("exponential", Likelihood::Exponential)],
             )?,
             schedule: read_schedule(py, schedule)?,
+            max_contacts: match max_contacts {
+                Some(given) => whole("max_contacts", given, 1000)? as usize,
+                None => FilterOptions::default().max_contacts,
+            },
             ..given.options(&robot)?
         };
         let kept = given.used(py, &options)?;
         kept.set_item("schedule", used_schedule(py, &options.schedule)?)?;
+        kept.set_item("max_contacts", options.max_contacts)?;
         kept.set_item("motion", &motion.given)?;
         kept.set_item("likelihood", &likelihood.given)?;
         let filter = ContactParticleFilter::new(robot.get().0.clone(), options);
@@ -228,15 +238,17 @@ impl PyContactParticleFilter {
     #[getter]
     fn particles(&self, py: Python<'_>) -> PyResult<Particles> {
         let filter = self.sole(py)?;
-        let columns = filter.particles();
-        let rows = (0..columns.len()).map(|k| Row {
-            contact: 0,
-            link: columns.link[k] as usize,
-            point: filter.point(k).into(),
-            normal: filter.normal(k).into(),
-            force: columns.force[k].max(0.0),
-            stiffness: columns.stiffness[k],
-            weight: filter.weights()[k],
+        let rows = filter.contacts().enumerate().flat_map(|(contact, own)| {
+            let columns = own.columns();
+            (0..columns.len()).map(move |k| Row {
+                contact,
+                link: columns.link[k] as usize,
+                point: own.point(k).into(),
+                normal: own.normal(k).into(),
+                force: columns.force[k].max(0.0),
+                stiffness: columns.stiffness[k],
+                weight: own.weights()[k],
+            })
         });
         Particles::of(py, self.robot.get(), rows)
     }

@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from contactsense import InputError, Robot, StaticObstacleSampler
+from contactsense import ContactParticleFilter, InputError, Robot, StaticObstacleSampler
 from contactsense.sim import TorqueNoise, atlas
 from contactsense.sim.deepest import moving_links
 
@@ -90,7 +90,8 @@ def _trial(item: Item) -> Trial:
         )
     except InputError:
         return Trial(contacts, number, None)
-    sampler = StaticObstacleSampler(
+    finder_class = ContactParticleFilter if options.method == "filter" else StaticObstacleSampler
+    finder = finder_class(
         robot,
         particles=options.particles,
         max_contacts=options.max_contacts,
@@ -104,7 +105,9 @@ def _trial(item: Item) -> Trial:
     noise = TorqueNoise(percent=options.percent, newton_metres=options.newton_metres, seed=seed)
     start = time.perf_counter()
     for q, torque in zip(run.q, run.external_torque, strict=True):
-        estimate = sampler.update(q, noise.measure(torque))
+        estimate = finder.update(q, noise.measure(torque))
     seconds = (time.perf_counter() - start) / len(run.q)
-    probability = float(sampler.number_probabilities[contacts - 1])
+    probability = np.nan
+    if isinstance(finder, StaticObstacleSampler):
+        probability = float(finder.number_probabilities[contacts - 1])
     return Trial(contacts, number, judge_several(estimate, run, -1, probability, seconds))

@@ -164,6 +164,6 @@ fn judge(
 }
 
 /// The largest misfit that errors explain, of so many redundant torques.
-fn tolerance(checks: usize) -> f64 {
+pub(super) fn tolerance(checks: usize) -> f64 {
     GRANTED * GRANTED * upper_limit(checks)
 }

@@ -96,11 +96,6 @@ pub struct FilterEstimate {
 }
 
 impl FilterEstimate {
-    /// No contact; space for so many links and modes.
-    pub(crate) fn new(links: usize, modes: usize) -> Self {
-        Self::of_several(links, modes, 1)
-    }
-
     /// No contact; space for so many contacts, each with so many links and modes.
     pub(crate) fn of_several(links: usize, modes: usize, contacts: usize) -> Self {
         FilterEstimate {

@@ -8,17 +8,21 @@ use nalgebra::Vector3;
 use super::columns::Columns;
 use super::estimate::FilterEstimate;
 use super::options::FilterOptions;
+use super::sets::Sets;
 use super::state::FilterState;
 use crate::error::{Error, Result};
 use crate::posterior::parallel::Pool;
 use crate::robot::Robot;
 
-/// Finds one contact anywhere on a robot from joint torques, by particles on its surface (Bimbo 2019).
+/// Finds one contact or several anywhere on a robot from joint torques, by particles on its surface (Bimbo 2019).
 ///
 /// Each particle is a hypothesis of link, point, obstacle and force. The robot makes small motions in contact; those
 /// that predict the torques survive. Per particle the force and the stiffness are a Gaussian belief that a Kalman
 /// filter updates (Rao-Blackwell), so that only link, point and obstacle are sampled, and an obstacle's centre is kept
 /// from step to step but for a share that is drawn anew.
+///
+/// Of several contacts ([`max_contacts`](FilterOptions::max_contacts)) each has particles of its own (Manuelli and Tedrake 2016), which
+/// explain what the others may leave over; they are added while the torques ask for it, and dropped when they explain nothing.
 ///
 /// After the first one an update on one thread allocates nothing; its time is in proportion to the particles.
 ///
@@ -41,7 +45,7 @@ use crate::robot::Robot;
 /// ```
 #[derive(Debug)]
 pub struct ContactParticleFilter {
-    state: FilterState,
+    sets: Sets,
     pool: Pool,
 }
 
@@ -51,9 +55,7 @@ impl ContactParticleFilter {
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) names the option.
     pub fn new(robot: Arc<Robot>, options: FilterOptions) -> Result<Self> {
-        let threads = options.threads;
-        let state = FilterState::new(robot, options)?;
-        Ok(Self { state, pool: Pool::new(threads)? })
+        Ok(Self { sets: Sets::new(&robot, &options)?, pool: Pool::new(options.threads)? })
     }
 
     /// Takes in a configuration `q` `(nq,)` and the external torque `tau_ext` `(nv,)` measured there [Nm; N for sliding
@@ -65,59 +67,99 @@ impl ContactParticleFilter {
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) names the argument; the filter is unchanged.
     pub fn update(&mut self, q: &[f64], tau_ext: &[f64]) -> Result<&FilterEstimate> {
-        let Self { state, pool } = self;
-        state.read(q, tau_ext)?;
-        pool.install(|| state.step());
-        if state.stop.swap(false, Ordering::Relaxed) {
+        let Self { sets, pool } = self;
+        sets.read(q, tau_ext)?;
+        pool.install(|| sets.step());
+        if sets.stop().swap(false, Ordering::Relaxed) {
             // What was done in part is of no use.
-            state.reset();
+            sets.reset();
             return Err(Error::Stopped);
         }
-        Ok(&state.found)
+        Ok(sets.found())
     }
 
     /// A flag that stops an update when another thread sets it. The update then ends within some seconds, even with ten
     /// million particles, with [`Error::Stopped`], and the filter has forgotten all updates.
     pub fn stop(&self) -> Arc<AtomicBool> {
-        self.state.stop.clone()
+        self.sets.stop().clone()
     }
 
     /// Forgets all updates.
     pub fn reset(&mut self) {
-        self.state.reset();
+        self.sets.reset();
     }
 
     /// The last estimate.
     pub fn estimate(&self) -> &FilterEstimate {
-        &self.state.found
-    }
-
-    /// The particles after the last update.
-    pub fn particles(&self) -> &Columns {
-        &self.state.cloud.particles
-    }
-
-    /// Their weights, which sum to one.
-    pub fn weights(&self) -> &[f64] {
-        &self.state.cloud.weights
+        self.sets.found()
     }
 
     /// Indices of the links that are looked on.
     pub fn links(&self) -> &[usize] {
-        &self.state.instant.frames.wanted
+        &self.first().instant.frames.wanted
+    }
+
+    /// The particles of each contact after the last update; of one contact where there is none.
+    pub fn contacts(&self) -> impl ExactSizeIterator<Item = ContactParticles<'_>> {
+        self.sets.of_contacts().iter().map(ContactParticles)
+    }
+
+    /// The particles of the first contact after the last update.
+    pub fn particles(&self) -> &Columns {
+        &self.first().cloud.particles
+    }
+
+    /// Their weights, which sum to one.
+    pub fn weights(&self) -> &[f64] {
+        &self.first().cloud.weights
+    }
+
+    fn first(&self) -> &FilterState {
+        &self.sets.of_contacts()[0]
+    }
+}
+
+/// The particles of one contact.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use contactsense::particle::{ContactParticleFilter, FilterOptions};
+/// use contactsense::robot::Robot;
+///
+/// let options = FilterOptions { particles: 500, max_contacts: 2, ..FilterOptions::default() };
+/// let mut filter = ContactParticleFilter::new(Arc::new(Robot::example_arm()), options)?;
+/// filter.update(&[0.4; 7], &[1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])?;
+/// assert_eq!(filter.contacts().len(), 1);
+/// for contact in filter.contacts() {
+///     assert!((contact.weights().iter().sum::<f64>() - 1.0).abs() < 1e-9);
+///     assert!((contact.normal(0).norm() - 1.0).abs() < 1e-9);
+/// }
+/// # Ok::<(), contactsense::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct ContactParticles<'a>(&'a FilterState);
+
+impl<'a> ContactParticles<'a> {
+    /// As columns.
+    pub fn columns(&self) -> &'a Columns {
+        &self.0.cloud.particles
+    }
+
+    /// Their weights, which sum to one.
+    pub fn weights(&self) -> &'a [f64] {
+        &self.0.cloud.weights
     }
 
     /// Contact point of particle k, world frame (m).
     pub fn point(&self, k: usize) -> Vector3<f64> {
-        let FilterState { instant, cloud, .. } = &self.state;
-        let particles = &cloud.particles;
-        instant.pose(particles.link[k] as usize).transform_point(&particles.point[k])
+        let particles = self.columns();
+        self.0.instant.pose(particles.link[k] as usize).transform_point(&particles.point[k])
     }
 
     /// Outward normal of particle k, world frame.
     pub fn normal(&self, k: usize) -> Vector3<f64> {
-        let FilterState { instant, cloud, .. } = &self.state;
-        let particles = &cloud.particles;
-        instant.pose(particles.link[k] as usize).rotation * particles.normal[k]
+        let particles = self.columns();
+        self.0.instant.pose(particles.link[k] as usize).rotation * particles.normal[k]
     }
 }

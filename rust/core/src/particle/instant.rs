@@ -1,11 +1,11 @@
 //! One instant as the particles see it: the links' poses before and now, what forces do to the joints there, and the
 //! torque that was measured.
 
-use nalgebra::Vector3;
+use nalgebra::{Vector3, Vector6};
 
 use crate::robot::{Kinematics, Robot};
 use crate::spatial::Pose;
-use crate::torque::{Frames, Target, TorqueNoise};
+use crate::torque::{Frames, NormalEquations, Target, TorqueNoise};
 
 /// Where a link was, and how large it is.
 #[derive(Debug, Clone)]
@@ -24,7 +24,13 @@ pub(crate) struct Instant {
     pub noise: TorqueNoise,
     pub frames: Frames,
     pub target: Target,
-    /// The measured torque, one a velocity variable [Nm, N], its stated standard deviation, and the one it is weighed with.
+    /// By link of the robot: normal equations with what other contacts may do integrated out, and the squared norm of the torques that
+    /// these do not explain. Without others as in frames and target.
+    pub equations: Vec<NormalEquations>,
+    pub squared: f64,
+    /// The measured torque, one a velocity variable [Nm, N], the same without what other contacts do, its stated standard deviation,
+    /// and the one it is weighed with.
+    pub measured: Vec<f64>,
     pub torque: Vec<f64>,
     pub stated: Vec<f64>,
     pub deviation: Vec<f64>,
@@ -48,6 +54,13 @@ impl Instant {
             noise,
             is_force: robot.forces(),
             target: Target::new(&frames),
+            equations: frames
+                .links
+                .iter()
+                .map(|frame| NormalEquations { gram: *frame.gram(), product: Vector6::zeros() })
+                .collect(),
+            squared: 0.0,
+            measured: vec![0.0; robot.nv()],
             torque: vec![0.0; robot.nv()],
             stated: vec![1.0; robot.nv()],
             deviation: vec![1.0; robot.nv()],
@@ -59,6 +72,7 @@ impl Instant {
     /// Takes on a checked configuration and torque, weighed by the noise or as it is.
     pub fn update(&mut self, robot: &Robot, q: &[f64], torque: &[f64], weighed: bool) {
         self.stand();
+        self.measured.copy_from_slice(torque);
         self.torque.copy_from_slice(torque);
         self.noise.set_deviations(torque, &mut self.stated);
         if weighed {
@@ -69,6 +83,10 @@ impl Instant {
         self.kinematics.set_configuration(robot, q);
         self.frames.update(robot, &self.kinematics, &self.deviation);
         self.target.set(&self.frames, &self.torque, &self.deviation);
+        for &link in &self.frames.wanted {
+            self.equations[link] = self.frames.links[link].normal_equations(self.target.on(link));
+        }
+        self.squared = self.target.squared;
     }
 
     /// Where a link is.

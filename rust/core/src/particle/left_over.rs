@@ -19,7 +19,7 @@ impl LeftOver {
     /// What the best particle leaves over of the torques of an instant.
     pub fn of(cloud: &Cloud, instant: &Instant) -> Self {
         let Cloud { particles, weights, .. } = cloud;
-        let (measured, joints) = (instant.target.squared, instant.torque.len());
+        let (measured, joints) = (instant.squared, instant.torque.len());
         let (mut best, mut greatest) = (0, -1.0);
         for (k, &weight) in weights.iter().enumerate() {
             if weight > greatest {

@@ -5,6 +5,7 @@
 //! measured torque (`likelihood.rs`), and particles are drawn anew by their weights (`resampling.rs`).
 
 mod adaptation;
+mod beside;
 mod birth;
 mod check;
 mod clock;
@@ -24,6 +25,7 @@ mod rejuvenation;
 mod response;
 mod schedule;
 mod search;
+mod sets;
 mod spring;
 mod stages;
 mod state;
@@ -34,7 +36,7 @@ mod window;
 pub(crate) use birth::exposed_places;
 pub use columns::Columns;
 pub use estimate::{Event, FilterEstimate};
-pub use filter::ContactParticleFilter;
+pub use filter::{ContactParticleFilter, ContactParticles};
 pub(crate) use instant::Instant;
 pub(crate) use motion::signed;
 pub(crate) use options::whole;

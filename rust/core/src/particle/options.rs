@@ -2,6 +2,7 @@
 
 use std::ops::RangeInclusive;
 
+use super::beside::MOST_CONTACTS;
 use super::schedule::Schedule;
 use crate::error::{Error, Result};
 use crate::robot::{Robot, LARGEST};
@@ -100,6 +101,8 @@ pub struct FilterOptions {
     pub noise: Option<NoiseModel>,
     /// How sharpness and noise change.
     pub schedule: Schedule,
+    /// Contacts that there may be at the same time, 1 to 4; several need the Gaussian likelihood.
+    pub max_contacts: usize,
     /// How many threads share a step.
     pub threads: usize,
 }
@@ -121,6 +124,7 @@ impl Default for FilterOptions {
             torque_threshold: None,
             noise: None,
             schedule: Schedule::Adaptive,
+            max_contacts: 1,
             threads: 1,
         }
     }
@@ -139,6 +143,13 @@ impl FilterOptions {
     pub(crate) fn check(&self, robot: &Robot) -> Result<Vec<usize>> {
         whole("particles", self.particles, 1..=MOST_PARTICLES)?;
         whole("threads", self.threads, 1..=MOST_THREADS)?;
+        whole("max_contacts", self.max_contacts, 1..=MOST_CONTACTS)?;
+        if self.max_contacts > 1 && self.likelihood != Likelihood::Gaussian {
+            return Err(Error::input(
+                "max_contacts",
+                format!("must be 1 where the likelihood is not Gaussian, got {}", self.max_contacts),
+            ));
+        }
         range("force_range", self.force_range)?;
         range("stiffness_range", self.stiffness_range)?;
         range("radius_range", self.radius_range)?;

@@ -18,15 +18,14 @@ impl ResponseModel {
     pub fn apply(&self, instant: &Instant, particles: &mut Slice<'_>, k: usize) -> NormalFit {
         let link = particles.link[k] as usize;
         let (point, normal) = (&particles.point[k], &particles.normal[k]);
-        let (frame, target) = (&instant.frames.links[link], instant.target.on(link));
-        let squared = instant.target.squared;
+        let (equations, squared) = (&instant.equations[link], instant.squared);
         let fit = match self.force_model.deviation_across(particles.force[k]) {
             Some(deviation) => {
-                let (gram, products) = frame.responses(point, &directions(normal), target);
+                let (gram, products) = equations.responses(point, &directions(normal));
                 NormalFit::without_friction(&gram, &products, squared, deviation.powi(2) / self.variance)
             }
             None => {
-                let (gain, product) = frame.response(point, normal, target);
+                let (gain, product) = equations.response(point, normal);
                 NormalFit { gain, product, target: squared, penalty: 0.0 }
             }
         };

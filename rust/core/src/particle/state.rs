@@ -4,8 +4,9 @@ use std::sync::atomic::AtomicBool;
 use std::sync::Arc;
 
 use super::adaptation::Adaptation;
+use super::beside::{Beside, Known, Spring};
 use super::birth::Births;
-use super::check::Check;
+use super::check::{tolerance, Check};
 use super::clock::Clock;
 use super::cloud::Cloud;
 use super::columns::Slice;
@@ -53,6 +54,12 @@ pub(super) struct FilterState {
     check: Check,
     pub found: FilterEstimate,
     adaptation: Adaptation,
+    beside: Beside,
+    /// As others take the contact to be: the best particle, if it is on the estimated link. None without a contact.
+    pub known: Option<Known>,
+    /// By how much the best particle reduces the squared norm of the torques that nothing else explains, each over its noise as it
+    /// was learnt.
+    pub explains: f64,
     pub clock: Clock,
 }
 
@@ -64,7 +71,7 @@ impl FilterState {
         let noise = options.torque_noise(&robot)?;
         let threshold = options.threshold(&robot, &noise)?;
         let births = Births::new(&robot, &wanted, &options)?;
-        let found = FilterEstimate::new(wanted.len(), MOST_MODES);
+        let found = FilterEstimate::of_several(wanted.len(), MOST_MODES, options.max_contacts);
         let instant = Instant::new(&robot, noise, wanted);
         Ok(Self {
             check: Check::new(&robot, &instant, &options),
@@ -75,6 +82,9 @@ impl FilterState {
             clusters: Clusters::new(count, robot.links().len())?,
             clock: Clock::new(options.seed),
             adaptation: Adaptation::default(),
+            beside: Beside::new(robot.nv()),
+            known: None,
+            explains: 0.0,
             stop: Arc::default(),
             robot,
             options,
@@ -87,6 +97,7 @@ impl FilterState {
         self.found.clear(Event::None);
         self.found.updates = 0;
         self.found.torque.clear();
+        self.known = None;
         self.cloud.clear();
     }
 
@@ -97,6 +108,72 @@ impl FilterState {
         let weighed = self.options.likelihood == Likelihood::Gaussian;
         self.instant.update(&self.robot, q, tau_ext, weighed);
         Ok(())
+    }
+
+    /// Takes out of the measurement that was read what other contacts do to it, beside this one as it is known.
+    pub fn look_beside(&mut self, others: &[Known]) {
+        let model = self.response_model();
+        self.beside.take_out(&mut self.instant, others, self.known.as_ref(), &model);
+    }
+
+    fn known(&self, best: usize) -> Option<Known> {
+        let mode = self.found.estimate.contact?;
+        let link = mode.link.get();
+        let particles = &self.cloud.particles;
+        if particles.link[best] as usize == link {
+            let obstacle = (self.options.motion == Motion::Curvature).then(|| Spring {
+                centre: particles.centre[best],
+                distance: particles.distance[best],
+                triangle: particles.triangle[best],
+                stiffness: particles.stiffness[best],
+            });
+            return Some(Known {
+                link,
+                point: particles.point[best],
+                normal: particles.normal[best],
+                force: particles.force[best].max(0.0),
+                spread: mode.spread,
+                obstacle,
+            });
+        }
+        let local = mode.in_link_frame(self.instant.pose(link));
+        let force = -local.force.dot(&local.normal);
+        Some(Known {
+            link,
+            point: local.point,
+            normal: local.normal,
+            force,
+            spread: mode.spread,
+            obstacle: None,
+        })
+    }
+
+    /// Lets what is known of the contact follow the robot to the pose that was read.
+    pub fn follow_known(&mut self) {
+        if let Some(known) = &mut self.known {
+            known.follow(&self.robot, &self.instant);
+        }
+    }
+
+    /// Looks for the contact on the whole surface beside what is known of it, and for its noise anew: what other contacts do is seen
+    /// otherwise now.
+    pub fn look_again(&mut self) {
+        self.adaptation = Adaptation::default();
+        let noise = StepNoise::at(&self.options, self.clock.age, 0.0);
+        let (effective, event) = self.reinitialise(&noise, 0.0, self.found.event);
+        self.check.restart();
+        self.estimate_contact(event, effective, 0.0);
+    }
+
+    /// Whether the torques of this update are explained without this contact.
+    pub fn is_spare(&self) -> bool {
+        self.instant.squared <= tolerance(self.instant.torque.len())
+    }
+
+    /// Forgets the poses that were to confirm the contact.
+    pub fn doubt(&mut self) {
+        self.check.restart();
+        self.found.estimate.ambiguous = self.found.estimate.contact.is_some();
     }
 
     /// Updates particles and estimate by the measurement that was read.
@@ -116,10 +193,11 @@ impl FilterState {
             self.follow(event, moved);
         } else {
             self.found.clear(event);
+            self.known = None;
         }
         self.clock.tick();
         self.found.updates = self.clock.step;
-        self.found.torque.clone_from(&self.instant.torque);
+        self.found.torque.clone_from(&self.instant.measured);
     }
 
     /// Lets the particles take in a contact's torque.
@@ -147,6 +225,8 @@ impl FilterState {
         let left = self.left_over();
         self.adaptation.learn(left.misfit, self.active_joints());
         self.update_estimate(event, effective, moved, &left);
+        self.known = self.known(left.best);
+        self.explains = (self.instant.squared - left.misfit) / self.adaptation.noise();
         left
     }
 
@@ -157,7 +237,7 @@ impl FilterState {
     /// Whether a contact begins, goes on or ends.
     fn detect(&mut self, moved: f64) -> Event {
         let before = self.gate.any_on();
-        let felt = self.gate.update(&self.instant.torque, 1.0);
+        let felt = self.gate.update(&self.instant.measured, 1.0);
         match (before, felt) {
             (false, false) => Event::None,
             (false, true) => Event::Started,
@@ -224,7 +304,7 @@ impl FilterState {
         course.for_each(self.cloud.particles.slice(), 0, &work);
         let (effective, evidence) = self.cloud.normalise();
         // Without a contact all of the torque is noise.
-        self.found.log_evidence = evidence + 0.5 * self.instant.target.squared / weighing.variance;
+        self.found.log_evidence = evidence + 0.5 * self.instant.squared / weighing.variance;
         effective
     }
 

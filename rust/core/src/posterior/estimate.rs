@@ -55,6 +55,13 @@ impl ContactEstimate {
         self.modes.clear();
     }
 
+    /// Takes on another one, of as many links.
+    pub(crate) fn copy(&mut self, other: &ContactEstimate) {
+        (self.contact, self.covariance, self.ambiguous) = (other.contact, other.covariance, other.ambiguous);
+        self.link_probabilities.clone_from(&other.link_probabilities);
+        self.modes.clone_from(&other.modes);
+    }
+
     /// Takes on what the modes say; `error` is the moment left over, as far as it is not averaged out (Nm).
     pub(crate) fn set(&mut self, clusters: &Clusters, frames: &Frames, error: f64) {
         self.clear();

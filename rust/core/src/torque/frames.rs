@@ -1,9 +1,10 @@
 //! What a force on a link does to the joints and the force/torque sensors at one pose, each row over its noise. What they
 //! measured is no part of it.
 
-use nalgebra::{Matrix3, Matrix4, Matrix6, Matrix6x3, Matrix6x4, Vector3, Vector4, Vector6};
+use nalgebra::{Matrix3, Matrix4, Matrix6, Matrix6x4, Vector3, Vector4, Vector6};
 
 use super::link_target::LinkTarget;
+use super::normal_equations::{response, responses, NormalEquations};
 use crate::robot::jacobian::for_each_column;
 use crate::robot::{Kinematics, LinkIndex, Robot, WORLD};
 use crate::spatial::vector::{split, stack};
@@ -64,8 +65,7 @@ impl Frame {
     /// over its noise (Bimbo 2019, eqs. 6 and 7).
     #[inline]
     pub fn response(&self, point: &Vector3<f64>, normal: &Vector3<f64>, target: &LinkTarget) -> (f64, f64) {
-        let wrench = stack(normal, &point.cross(normal));
-        (wrench.dot(&(self.gram * wrench)), -wrench.dot(&target.product))
+        response(&self.gram, &target.product, point, normal)
     }
 
     /// As [`response`](Self::response), of unit forces in three directions: the Gram matrix of their torques, and the
@@ -77,8 +77,12 @@ impl Frame {
         forces: &[Vector3<f64>; 3],
         target: &LinkTarget,
     ) -> (Matrix3<f64>, Vector3<f64>) {
-        let wrenches = Matrix6x3::from_columns(&forces.map(|force| stack(&force, &point.cross(&force))));
-        (wrenches.tr_mul(&(self.gram * wrenches)), wrenches.tr_mul(&target.product))
+        responses(&self.gram, &target.product, point, forces)
+    }
+
+    /// The normal equations of a wrench at the link's origin.
+    pub fn normal_equations(&self, target: &LinkTarget) -> NormalEquations {
+        NormalEquations { gram: self.gram, product: target.product }
     }
 
     /// The normal equations of a weight that the link carries: of its mass times gravity, and of that times its place.

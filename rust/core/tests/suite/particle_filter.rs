@@ -1,7 +1,9 @@
 //! The particle filter finds a ball that an arm leans on, the same on any number of threads.
 
 use crate::common;
-use contactsense::particle::{ContactParticleFilter, Event, FilterOptions, Likelihood, Motion, Schedule};
+use contactsense::particle::{
+    ContactParticleFilter, ContactParticles, Event, FilterOptions, Likelihood, Motion, Schedule,
+};
 use contactsense::Error;
 
 fn filter(
@@ -37,11 +39,12 @@ fn a_ball_is_found_on_meshes_and_on_primitives() {
 fn threads_change_no_bit() {
     let robot = common::meshed_arm();
     let run = common::ball_run(&robot, "arm_4", 12);
-    for (motion, likelihood, schedule) in [
-        (Motion::Curvature, Likelihood::Gaussian, Schedule::Adaptive),
-        (Motion::FixedInWorld, Likelihood::Gaussian, Schedule::Adaptive),
-        (Motion::FixedOnLink, Likelihood::Gaussian, Schedule::Adaptive),
-        (Motion::Curvature, Likelihood::Exponential, Schedule::paper()),
+    for (motion, likelihood, schedule, max_contacts) in [
+        (Motion::Curvature, Likelihood::Gaussian, Schedule::Adaptive, 1),
+        (Motion::Curvature, Likelihood::Gaussian, Schedule::Adaptive, 3),
+        (Motion::FixedInWorld, Likelihood::Gaussian, Schedule::Adaptive, 1),
+        (Motion::FixedOnLink, Likelihood::Gaussian, Schedule::Adaptive, 1),
+        (Motion::Curvature, Likelihood::Exponential, Schedule::paper(), 1),
     ] {
         let particles = [1, 2, 4].map(|threads| {
             let schedule = schedule.clone();
@@ -52,19 +55,27 @@ fn threads_change_no_bit() {
                 motion,
                 likelihood,
                 schedule,
+                max_contacts,
                 ..FilterOptions::default()
             };
             let mut filter = filter(&robot, options);
             for (q, torque) in run.poses.iter().zip(&run.torques) {
-                filter.update(q, torque).expect("valid input");
+                // Of more than one contact: no single push does that.
+                let aside = if max_contacts > 1 { 3.0 } else { 0.0 };
+                let torque: Vec<f64> = torque.iter().map(|torque| torque + aside).collect();
+                filter.update(q, &torque).expect("valid input");
             }
-            let columns = filter.particles();
-            let bits = |k: usize| {
-                let (p, n) = (columns.point[k], columns.normal[k]);
-                let numbers = [p.x, p.y, p.z, n.x, n.y, n.z, columns.force[k], columns.stiffness[k]];
-                (columns.link[k], numbers.map(f64::to_bits), filter.weights()[k].to_bits())
+            assert_eq!(filter.contacts().len() > 1, max_contacts > 1);
+            let bits = |own: ContactParticles<'_>| {
+                let columns = own.columns();
+                let of = |k: usize| {
+                    let (p, n) = (columns.point[k], columns.normal[k]);
+                    let numbers = [p.x, p.y, p.z, n.x, n.y, n.z, columns.force[k], columns.stiffness[k]];
+                    (columns.link[k], numbers.map(f64::to_bits), own.weights()[k].to_bits())
+                };
+                (0..columns.len()).map(of).collect::<Vec<_>>()
             };
-            (0..columns.len()).map(bits).collect::<Vec<_>>()
+            filter.contacts().flat_map(bits).collect::<Vec<_>>()
         });
         assert_eq!(particles[0], particles[1]);
         assert_eq!(particles[0], particles[2]);
@@ -73,7 +84,8 @@ fn threads_change_no_bit() {
 
 /// All that shows of a filter's state.
 fn snapshot(filter: &ContactParticleFilter) -> (Vec<[u64; 3]>, Vec<u64>, u64, String) {
-    let points = (0..filter.particles().len()).map(|k| <[f64; 3]>::from(filter.point(k)).map(f64::to_bits));
+    let own = filter.contacts().next().expect("one");
+    let points = (0..filter.particles().len()).map(|k| <[f64; 3]>::from(own.point(k)).map(f64::to_bits));
     let weights = filter.weights().iter().map(|weight| weight.to_bits());
     let estimate = filter.estimate();
     (points.collect(), weights.collect(), estimate.updates, format!("{estimate:?}"))

@@ -1,0 +1,152 @@
+"""Several contacts at the same time, each with particles of its own."""
+
+from __future__ import annotations
+
+import pickle
+
+import numpy as np
+import pytest
+
+import contactsense as cs
+from contactsense.sim import TorqueNoise, atlas
+from contactsense_studies.several_contacts.data import as_data
+from contactsense_studies.several_contacts.judge import Judged, judge_several
+from contactsense_studies.several_contacts.options import Options
+from contactsense_studies.several_contacts.runs import SeveralRun, record_several
+from contactsense_studies.several_contacts.study import run
+
+ARM_NOISE = {"newton_metres": 0.02, "percent": 3.0}
+
+
+@pytest.fixture(scope="module")
+def arm() -> cs.Robot:
+    return cs.Robot.named("iiwa14")
+
+
+def torque_of(robot: cs.Robot, run: SeveralRun, contact: int) -> np.ndarray:
+    """The external torques of one of the contacts alone."""
+    rows = [
+        robot.jacobian(q, run.links[contact], run.points[k, contact])[:3].T @ run.forces[k, contact]
+        for k, q in enumerate(run.q)
+    ]
+    return np.array(rows)
+
+
+def test_one_contact_is_what_a_filter_of_one_finds(arm: cs.Robot) -> None:
+    touched = record_several(arm, ("iiwa_link_5",), 1, 20, seed=3)
+    alone, of_three = (cs.ContactParticleFilter(arm, particles=3000, max_contacts=k) for k in (1, 3))
+    noise = TorqueNoise(seed=3, **ARM_NOISE)
+    for q, torque in zip(touched.q, touched.external_torque, strict=True):
+        measured = noise.measure(torque)
+        found, same = alone.update(q, measured), of_three.update(q, measured)
+        assert len(same.contacts) == 1
+        np.testing.assert_array_equal(found.point, same.point)
+    np.testing.assert_array_equal(alone.particles.point, of_three.particles.point)
+
+
+def test_contacts_come_and_go(arm: cs.Robot) -> None:
+    """What is known of a contact stays known when another one begins or ends."""
+    touched = record_several(arm, ("iiwa_link_4", "iiwa_link_7"), 2, 60, seed=7)
+    place = touched.links.index("iiwa_link_7")
+    alone = torque_of(arm, touched, place)
+    tracker = cs.ContactParticleFilter(arm, particles=5000, max_contacts=2)
+    noise = TorqueNoise(seed=7, **ARM_NOISE)
+    numbers, errors = [], []
+    for k, q in enumerate(touched.q):
+        torque = touched.external_torque[k] if 15 <= k < 45 else alone[k]
+        estimate = tracker.update(q, noise.measure(torque))
+        numbers.append(len(estimate.contacts))
+        away = [np.linalg.norm(each.point - touched.points[k, place]) for each in estimate.contacts]
+        errors.append(min(away))
+        assert [each.link for each in estimate.contacts].count("") == 0
+    assert numbers[14] == 1
+    assert numbers[44] == 2
+    assert numbers[-1] == 1
+    assert max(errors[13:15]) < 0.01
+    assert max(errors[40:45]) < 0.02
+    assert max(errors[-5:]) < 0.01
+    # Let go.
+    assert not tracker.update(touched.q[-1], np.zeros(7)).contacts
+
+
+def test_particles_and_copies(arm: cs.Robot) -> None:
+    touched = record_several(arm, ("iiwa_link_4", "iiwa_link_7"), 2, 20, seed=7)
+    tracker = cs.ContactParticleFilter(arm, particles=2000, max_contacts=2)
+    assert tracker.options["max_contacts"] == 2
+    for k, (q, torque) in enumerate(zip(touched.q, touched.external_torque, strict=True)):
+        estimate = tracker.update(q, torque, time=float(k))
+    assert len(estimate.contacts) == 2
+    assert estimate.contacts[0] is estimate
+    assert {each.time for each in estimate.contacts} == {19.0}
+    copy = pickle.loads(pickle.dumps(estimate))
+    assert [each.link for each in copy.contacts] == [each.link for each in estimate.contacts]
+    particles = tracker.particles
+    assert particles.contact.tolist() == [0] * 2000 + [1] * 2000
+    assert particles.weight[2000:].sum() == pytest.approx(1.0)
+    again = cs.ContactParticleFilter(arm, **tracker.options)
+    for q, torque in zip(touched.q, touched.external_torque, strict=True):
+        again.update(q, torque)
+    np.testing.assert_array_equal(again.particles.point, particles.point)
+    tracker.reset()
+    for q, torque in zip(touched.q, touched.external_torque, strict=True):
+        tracker.update(q, torque)
+    np.testing.assert_array_equal(tracker.particles.point, particles.point)
+
+
+def judged(robot: cs.Robot, links: tuple[str, ...], seed: int) -> Judged:
+    touched = record_several(robot, links, 2, 40, q=atlas.posture(robot.model, seed), friction=0.3, seed=seed)
+    tracker = cs.ContactParticleFilter(
+        robot,
+        particles=5000,
+        max_contacts=3,
+        links=links,
+        measurement="friction_cone",
+        friction=0.3,
+        torque_noise=0.1,
+        relative_noise=0.01,
+        seed=seed,
+    )
+    noise = TorqueNoise(newton_metres=0.1, percent=1.0, seed=seed)
+    for q, torque in zip(touched.q, touched.external_torque, strict=True):
+        estimate = tracker.update(q, noise.measure(torque))
+    return judge_several(estimate, touched, -1)
+
+
+def test_two_contacts_on_a_humanoid() -> None:
+    """On different limbs, with friction and noise."""
+    robot = cs.Robot.named("atlas")
+    links = ("l_larm", "l_hand", "r_larm", "r_hand", "utorso")
+    trials = [judged(robot, links, seed) for seed in range(20, 30)]
+    assert sum(trial.links_right for trial in trials) >= 8
+    errors = [error for trial in trials for error in trial.errors]
+    assert sum(error < 0.03 for error in errors) >= 16
+    assert sum(trial.located for trial in trials) >= 8
+    assert sum(trial.wrong for trial in trials) == 0
+
+
+def test_bad_numbers_of_contacts_are_refused(arm: cs.Robot) -> None:
+    for number in (0, 5, 1.5):
+        with pytest.raises(cs.InputError, match="max_contacts"):
+            cs.ContactParticleFilter(arm, max_contacts=number)
+    with pytest.raises(cs.InputError, match="max_contacts: must be 1 where the likelihood is not Gaussian"):
+        cs.ContactParticleFilter(arm, max_contacts=2, likelihood="exponential")
+
+
+def test_bad_input_changes_nothing(arm: cs.Robot) -> None:
+    touched = record_several(arm, ("iiwa_link_4", "iiwa_link_7"), 2, 12, seed=7)
+    tracker, other = (cs.ContactParticleFilter(arm, particles=1000, max_contacts=2) for _ in range(2))
+    for q, torque in zip(touched.q, touched.external_torque, strict=True):
+        with pytest.raises(cs.InputError, match="tau_ext"):
+            other.update(q, np.full(7, np.nan))
+        np.testing.assert_array_equal(tracker.update(q, torque).point, other.update(q, torque).point)
+
+
+def test_the_study_of_a_filter() -> None:
+    options = Options(method="filter", links=("iiwa_link_4", "iiwa_link_7"), trials=2, particles=1000)
+    study = run(options, processes=1)
+    (score,) = (score for score in as_data(study)["scores"] if score["contacts"] == 1)
+    assert score["trials"] == 2
+    assert score["links_right"] == 1.0
+    assert np.isnan(score["probability"])
+    with pytest.raises(cs.InputError, match="method must be one of sampler, filter"):
+        Options(method="map")
