@@ -29,6 +29,8 @@ pub(super) struct Sets {
     /// Updates for which each has explained nothing, and since the number of sets changed.
     idle: [usize; MOST_CONTACTS],
     settled: usize,
+    /// Whether a contact was sure since the number changed.
+    sure: bool,
     /// Since the start or the last reset.
     updates: u64,
     stop: Arc<AtomicBool>,
@@ -44,7 +46,7 @@ impl Sets {
         let mut sets = (0..options.max_contacts).map(set).collect::<Result<Vec<_>>>()?;
         let stop = Arc::new(AtomicBool::new(false));
         sets.iter_mut().for_each(|set| set.stop = stop.clone());
-        Ok(Sets { sets, count: 1, idle: [0; MOST_CONTACTS], settled: 0, updates: 0, stop })
+        Ok(Sets { sets, count: 1, idle: [0; MOST_CONTACTS], settled: 0, sure: false, updates: 0, stop })
     }
 
     /// A set for each contact; one where there is none.
@@ -68,7 +70,7 @@ impl Sets {
     }
 
     fn forget(&mut self) {
-        (self.count, self.settled) = (1, 0);
+        (self.count, self.settled, self.sure) = (1, 0, false);
         self.idle.fill(0);
     }
 
@@ -114,6 +116,8 @@ impl Sets {
     /// Contact k takes in what it has read.
     fn step_of(&mut self, k: usize) {
         let several = self.look_beside(k);
+        // Another contact is likelier than that one that was sure is elsewhere.
+        self.sets[k].stays = self.sure && self.count < self.sets.len();
         self.sets[k].step();
         if several && self.sets[k].found.event == Event::Changed {
             // What the others were confirmed by was wrong.
@@ -125,6 +129,7 @@ impl Sets {
     fn change_number(&mut self) {
         self.settled += 1;
         let explained = self.of_contacts().iter().any(|set| set.found.explained);
+        self.sure |= self.of_contacts().iter().any(|set| !set.found.estimate.ambiguous);
         for k in 0..self.count {
             let idle = self.sets[k].explains < LEAST_EXPLAINED && self.sets[k].is_spare();
             self.idle[k] = if idle { self.idle[k] + 1 } else { 0 };
@@ -150,8 +155,9 @@ impl Sets {
         self.count += 1;
         self.sets[k].reset();
         self.step_of(k);
-        // The others were found as if the new one were not there.
-        for j in 0..k {
+        // What was sure stays so. Otherwise the others were found as if the new one were not there.
+        let again = if self.sure { 0..0 } else { 0..k };
+        for j in again {
             self.look_beside(j);
             self.sets[j].look_again();
         }
@@ -159,7 +165,7 @@ impl Sets {
     }
 
     fn changed(&mut self) {
-        self.settled = 0;
+        (self.settled, self.sure) = (0, false);
         self.idle.fill(0);
         self.sets[..self.count].iter_mut().for_each(FilterState::doubt);
         self.sets[0].found.event = Event::Changed;

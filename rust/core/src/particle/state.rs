@@ -60,6 +60,8 @@ pub(super) struct FilterState {
     /// By how much the best particle reduces the squared norm of the torques that nothing else explains, each over its noise as it
     /// was learnt.
     pub explains: f64,
+    /// Whether the contact is not looked for elsewhere, whatever it leaves unexplained.
+    pub stays: bool,
     pub clock: Clock,
 }
 
@@ -85,6 +87,7 @@ impl FilterState {
             beside: Beside::new(robot.nv()),
             known: None,
             explains: 0.0,
+            stays: false,
             stop: Arc::default(),
             robot,
             options,
@@ -208,7 +211,8 @@ impl FilterState {
             self.predict(&noise, self.cloud.particles.len());
         }
         let mut effective = self.weigh(moved, &noise);
-        let due = self.clock.age >= self.clock.next_reinitialisation && noise.sharpness.is_none();
+        let due =
+            self.clock.age >= self.clock.next_reinitialisation && noise.sharpness.is_none() && !self.stays;
         if due && self.left_over().is_much(REINITIALISE) {
             self.clock.next_reinitialisation = self.clock.age + PAUSE;
             (effective, event) = self.reinitialise(&noise, moved, event);
