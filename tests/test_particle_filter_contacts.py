@@ -68,6 +68,14 @@ def test_contacts_come_and_go(arm: cs.Robot) -> None:
             after.append(error[59])
         # Let go.
         assert not tracker.update(touched.q[-1], np.zeros(7)).contacts
+        # As at the start, whichever contact ended first.
+        tracker.reset()
+        for k in range(3):
+            again = tracker.update(touched.q[k], alone[k])
+        fresh = cs.ContactParticleFilter(arm, **tracker.options)
+        for k in range(3):
+            anew = fresh.update(touched.q[k], alone[k])
+        np.testing.assert_array_equal(again.point, anew.point)
     assert np.median(numbers, axis=0).tolist() == [1, 2, 1]
     assert len(during) >= 8
     assert np.mean(np.array(during) < 0.01) >= 0.6

@@ -23,6 +23,11 @@ const MOST_VARIANCE: f64 = 30.0;
 /// Updates after which a contact that one joint, two or three feel tells little new.
 const FEW_JOINTS: [f64; 3] = [0.3, 1.0, 10.0];
 
+/// Which share of a measurement is new after a motion [m].
+pub(super) fn news(moved: f64) -> f64 {
+    (moved / NEW_POSE).clamp(STANDING, 1.0)
+}
+
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Adaptation {
     /// Variance of the torques' error, in units of their noise; none before a measurement.
@@ -47,7 +52,7 @@ impl Adaptation {
     /// A measurement counts once. While the robot stands still what is left of it is weighed, and then next to nothing:
     /// errors of the model do not average out where nothing moves.
     pub fn sharpest(&mut self, moved: f64, active_joints: usize, age: u64) -> f64 {
-        let news = (moved / NEW_POSE).clamp(STANDING, 1.0);
+        let news = news(moved);
         // The torques of few joints over a small motion are smooth functions of as many angles: they tell a few
         // numbers. More samples of them would favour the places where torques depend least on the point.
         let fade = FEW_JOINTS

@@ -20,12 +20,17 @@ const FORCES: usize = 3;
 const PLACES: usize = 2;
 const UNKNOWNS: usize = (FORCES + PLACES) * (MOST_CONTACTS - 1);
 const _: () = assert!(FORCES * MOST_CONTACTS <= UNKNOWNS, "the forces of all contacts are fitted together");
-/// A force is known no better than this, or than its own size [N]: another contact may have been taken for a part of it.
+/// A force is known no better than this, or than its own size [N]: another contact may have been taken for a part of it. That of a
+/// contact that was sure follows the motion.
 const LEAST_DOUBT: f64 = 10.0;
-/// The normal is known no better than this [rad]: places within the spread have other ones, and the surface is made of triangles.
-const TILT: f64 = 0.3;
-/// Spreads wider than this are no longer linear in the torques [m].
-const WIDEST: f64 = 0.05;
+const LEAST_SURE_DOUBT: f64 = 1.0;
+const SURE_DOUBT: f64 = 0.2;
+/// The normal is known no better than this, as the surface is made of triangles, and within the spread it turns as on a radius of so much;
+/// at most to any direction of the half-space [rad, m].
+const TILT: [f64; 2] = [0.3, 1.0];
+const ROUND: f64 = 0.1;
+/// A spread wider than a link is one over several links [m].
+const WIDEST: f64 = 0.3;
 
 /// A contact whose place is held to be known, in its link's frame.
 #[derive(Debug, Clone, Copy)]
@@ -39,6 +44,8 @@ pub(super) struct Known {
     pub force: f64,
     /// Of the point [m].
     pub spread: f64,
+    /// Whether motion has confirmed it, so that its force is known too.
+    pub sure: bool,
     /// That it is with; none where nothing is assumed of it.
     pub obstacle: Option<Spring>,
 }
@@ -71,6 +78,7 @@ impl Known {
         normal: Vector3::new(0.0, 0.0, 1.0),
         force: 0.0,
         spread: 0.0,
+        sure: false,
         obstacle: None,
     };
 
@@ -91,9 +99,15 @@ impl Known {
     /// Standard deviations of the three forces.
     fn deviations(&self, model: &ResponseModel) -> [f64; FORCES] {
         let friction = model.force_model.deviation_across(self.force).unwrap_or(0.0);
-        let across = friction.hypot(TILT * self.force);
+        let tilt = (self.spread / ROUND).clamp(TILT[0], TILT[1]);
+        let across = friction.hypot(tilt * self.force);
+        let along = if self.sure {
+            (SURE_DOUBT * self.force).max(LEAST_SURE_DOUBT)
+        } else {
+            self.force.max(LEAST_DOUBT)
+        };
         // Weights are in units of a noise that may be greater than stated.
-        [self.force.max(LEAST_DOUBT), across, across].map(|deviation| deviation / model.variance.sqrt())
+        [along, across, across].map(|deviation| deviation / model.variance.sqrt())
     }
 
     fn forces(&self, model: &ResponseModel) -> [Unknown; FORCES] {

@@ -75,7 +75,7 @@ impl ContactParticleFilter {
             sets.reset();
             return Err(Error::Stopped);
         }
-        Ok(sets.found())
+        Ok(&self.sets.first().found)
     }
 
     /// A flag that stops an update when another thread sets it. The update then ends within some seconds, even with ten
@@ -91,31 +91,27 @@ impl ContactParticleFilter {
 
     /// The last estimate.
     pub fn estimate(&self) -> &FilterEstimate {
-        self.sets.found()
+        &self.sets.first().found
     }
 
     /// Indices of the links that are looked on.
     pub fn links(&self) -> &[usize] {
-        &self.first().instant.frames.wanted
+        &self.sets.first().instant.frames.wanted
     }
 
     /// The particles of each contact after the last update; of one contact where there is none.
     pub fn contacts(&self) -> impl ExactSizeIterator<Item = ContactParticles<'_>> {
-        self.sets.of_contacts().iter().map(ContactParticles)
+        self.sets.of_contacts().map(ContactParticles)
     }
 
     /// The particles of the first contact after the last update.
     pub fn particles(&self) -> &Columns {
-        &self.first().cloud.particles
+        &self.sets.first().cloud.particles
     }
 
     /// Their weights, which sum to one.
     pub fn weights(&self) -> &[f64] {
-        &self.first().cloud.weights
-    }
-
-    fn first(&self) -> &FilterState {
-        &self.sets.of_contacts()[0]
+        &self.sets.first().cloud.weights
     }
 }
 

@@ -100,7 +100,7 @@ impl FilterState {
         self.found.clear(Event::None);
         self.found.updates = 0;
         self.found.torque.clear();
-        self.known = None;
+        (self.known, self.adaptation) = (None, Adaptation::default());
         self.cloud.clear();
     }
 
@@ -136,6 +136,7 @@ impl FilterState {
                 normal: particles.normal[best],
                 force: particles.force[best].max(0.0),
                 spread: mode.spread,
+                sure: self.stays,
                 obstacle,
             });
         }
@@ -147,6 +148,7 @@ impl FilterState {
             normal: local.normal,
             force,
             spread: mode.spread,
+            sure: self.stays,
             obstacle: None,
         })
     }
@@ -168,9 +170,13 @@ impl FilterState {
         self.estimate_contact(event, effective, 0.0);
     }
 
-    /// Whether the torques of this update are explained without this contact.
-    pub fn is_spare(&self) -> bool {
-        self.instant.squared <= tolerance(self.instant.torque.len())
+    /// Whether the torques of this update are explained without this contact, which explains less than told; or whether one that was sure
+    /// has no force any more.
+    pub fn is_idle(&self, least: f64) -> bool {
+        if self.stays {
+            return self.known.is_none_or(|known| known.force < self.options.force_range[0]);
+        }
+        self.explains < least && self.instant.squared <= tolerance(self.instant.torque.len())
     }
 
     /// Forgets the poses that were to confirm the contact.

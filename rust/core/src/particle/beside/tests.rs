@@ -16,7 +16,15 @@ fn instant(robot: &Robot, torque: &[f64]) -> Instant {
 
 fn known(link: usize, force: f64) -> Known {
     let normal = Vector3::new(0.2, 0.9, -0.4).normalize();
-    Known { link, point: Vector3::new(0.03, 0.05, 0.1), normal, force, spread: 0.01, obstacle: None }
+    Known {
+        link,
+        point: Vector3::new(0.03, 0.05, 0.1),
+        normal,
+        force,
+        spread: 0.01,
+        sure: false,
+        obstacle: None,
+    }
 }
 
 /// Torques of wrenches at the origin of a link, each row over its noise.
@@ -46,7 +54,7 @@ fn what_others_may_do_is_integrated_out_as_a_covariance_would() {
         let [inward, first, second] = directions(&other.normal);
         let force = |force: Vector3<f64>| stack(&force, &other.point.cross(&force));
         let moment = |along: Vector3<f64>| stack(&Vector3::zeros(), &along.cross(&(inward * other.force)));
-        let across = (0.25 * other.force).hypot(TILT * other.force);
+        let across = (0.25 * other.force).hypot(0.3 * other.force);
         let wrenches = [
             force(inward * other.force.max(10.0)),
             force(first * across),
