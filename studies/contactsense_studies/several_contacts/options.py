@@ -31,9 +31,7 @@ class Options:
     poses: Annotated[int, Option(help="Poses of a trial.")] = 40
     particles: Annotated[
         int,
-        Option(
-            help="Number of particles for each number of contacts (sampler) or each contact (filter)."
-        ),
+        Option(help="Number of particles for each number of contacts (sampler) or each contact (filter)."),
     ] = 10_000
     max_contacts: Annotated[int, Option(help="Contacts that are looked for at most.")] = 3
     friction: Annotated[float, Option(help="Coefficient of friction, which is told.")] = 0.0
