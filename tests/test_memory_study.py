@@ -14,7 +14,7 @@ from robots import IIWA14
 
 from contactsense_studies.harness import save_pictures
 from contactsense_studies.memory.data import as_data
-from contactsense_studies.memory.methods import METHODS, NOISES
+from contactsense_studies.memory.methods import METHODS
 from contactsense_studies.memory.options import Options
 from contactsense_studies.memory.plots import PICTURES
 from contactsense_studies.memory.report import print_study
@@ -30,7 +30,7 @@ def study() -> Study:
 
 def test_what_remembers_finds_the_point_whatever_the_noise(study: Study) -> None:
     for link in LINKS:
-        for noise in NOISES:
+        for noise in study.options.noises():
             (found,) = study.found("sampler", noise, link)
             assert found.outcome.right
             assert found.outcome.error < 0.01
@@ -43,7 +43,7 @@ def test_a_contact_that_jumps_over_a_hollow_of_a_mesh_is_found_too() -> None:
     robot = str(IIWA14.require().path)
     study = run(Options(robot=robot, links=("iiwa_link_3", "iiwa_link_6"), trials=4, seed=11))
     for link in study.links:
-        for noise in NOISES:
+        for noise in study.options.noises():
             for found in study.found("sampler", noise, link):
                 assert found.outcome.right, (link, noise, found)
                 assert found.outcome.error < 0.02, (link, noise, found)
@@ -63,6 +63,18 @@ def test_the_study_shows_what_it_found(study: Study, tmp_path: Path) -> None:
     assert all(method.name in shown.getvalue() for method in METHODS)
     data = as_data(study)
     assert data["complete"]
-    assert len(data["scores"]) == len(LINKS) * len(METHODS) * len(NOISES) == len(data["trials"])
+    assert len(data["scores"]) == len(LINKS) * len(METHODS) * 3 == len(data["trials"])
+    (picture,) = save_pictures(PICTURES, study, tmp_path)
+    assert picture.stat().st_size > 10_000
+
+
+def test_an_imperfect_arm_is_calibrated_before(tmp_path: Path) -> None:
+    study = run(
+        Options(imperfect=True, links=("iiwa_link_5", "iiwa_link_7"), trials=2, particles=3000, seed=5)
+    )
+    errors = [found.outcome.error for link in study.links for found in study.found("sampler", 0.0, link)]
+    assert len(errors) == 4
+    assert sorted(errors)[1] < 0.02
+    assert len(as_data(study)["scores"]) == 2 * len(METHODS)
     (picture,) = save_pictures(PICTURES, study, tmp_path)
     assert picture.stat().st_size > 10_000

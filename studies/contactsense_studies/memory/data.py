@@ -6,13 +6,18 @@ from dataclasses import asdict
 from typing import Any
 
 from ..bimbo2019.score import score
-from .methods import METHODS, NEAR, NOISES, PROBABLE
+from .methods import METHODS, NEAR, PROBABLE
 from .study import EXPERIMENT, Study
 
 
 def as_data(study: Study) -> dict[str, Any]:
     """Everything for `print_json`, in SI units."""
-    cases = [(link, each.name, noise) for link in study.links for each in METHODS for noise in NOISES]
+    cases = [
+        (link, each.name, noise)
+        for link in study.links
+        for each in METHODS
+        for noise in study.options.noises()
+    ]
     return {
         "study": "memory",
         "complete": study.complete,

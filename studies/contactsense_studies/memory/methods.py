@@ -6,14 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from contactsense import ContactMap, ContactParticleFilter, Robot, StaticObstacleSampler
+from contactsense import Calibration, ContactMap, ContactParticleFilter, Robot, StaticObstacleSampler
 from contactsense.sim import ContactRun, TorqueNoise
 
 from ..bimbo2019.score import Outcome, judge
 from .options import Options
 
-# Noise of each external torque, of which nothing is said [%]: three are granted by default.
-NOISES = (0.0, 5.0, 10.0)
 # The most probable places that are weighed beside the best: so probable at least, and so near [m].
 PROBABLE, NEAR = 0.1, 0.02
 
@@ -25,7 +23,7 @@ class Method:
     """A way to locate a contact, and each how many samples of a run it is fed."""
 
     name: str
-    make: Callable[[Robot, Options], Update]
+    make: Callable[[Robot, Options, Calibration | None], Update]
     every: int = 1
 
 
@@ -37,12 +35,12 @@ class Found:
     near: bool  # a probable place is near the true one
 
 
-def _filter(robot: Robot, options: Options) -> Update:
-    return ContactParticleFilter(robot, **_of_particles(options)).update
+def _filter(robot: Robot, options: Options, calibration: Calibration | None) -> Update:
+    return ContactParticleFilter(robot, **_of_particles(options), calibration=calibration).update
 
 
-def _sampler(robot: Robot, options: Options) -> Update:
-    return StaticObstacleSampler(robot, **_of_particles(options)).update
+def _sampler(robot: Robot, options: Options, calibration: Calibration | None) -> Update:
+    return StaticObstacleSampler(robot, **_of_particles(options), calibration=calibration).update
 
 
 def _of_particles(options: Options) -> dict[str, Any]:
@@ -51,18 +49,24 @@ def _of_particles(options: Options) -> dict[str, Any]:
     return {**common, **rubbing} if options.friction > 0.0 else common
 
 
-def _map(robot: Robot, options: Options) -> Update:
-    return (
-        ContactMap(robot, friction=options.friction) if options.friction > 0.0 else ContactMap(robot)
-    ).evaluate
+def _map(robot: Robot, options: Options, calibration: Calibration | None) -> Update:
+    rubbing: dict[str, Any] = {"friction": options.friction} if options.friction > 0.0 else {}
+    return ContactMap(robot, **rubbing, calibration=calibration).evaluate
 
 
 METHODS = (Method("map", _map, every=5), Method("filter", _filter), Method("sampler", _sampler, every=4))
 
 
-def locate(robot: Robot, run: ContactRun, method: Method, noise: float, options: Options) -> Found:
+def locate(
+    robot: Robot,
+    run: ContactRun,
+    method: Method,
+    noise: float,
+    options: Options,
+    calibration: Calibration | None = None,
+) -> Found:
     """Feeds the run to the end, with noise of so many per cent; the seed of `options` is the trial's."""
-    update = method.make(robot, options)
+    update = method.make(robot, options, calibration)
     torques = TorqueNoise(percent=noise, seed=options.seed)
     for row, (q, torque) in enumerate(zip(run.q, run.external_torque, strict=True)):
         measured = torques.measure(torque)

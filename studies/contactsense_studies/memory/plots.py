@@ -7,7 +7,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from ..harness import Pictures
-from .methods import METHODS, NOISES
+from .methods import METHODS
 from .study import Study
 
 _COLOURS = {"map": "#8A8A8A", "filter": "#0072B2", "sampler": "#D55E00"}
@@ -18,8 +18,9 @@ _RANGE = (1e-4, 1.0)
 def draw(figure: Figure, study: Study) -> None:
     """The error of every trial by link and method, a panel a noise."""
     figure.suptitle("Error of the contact point after random motions", x=0.01, ha="left", weight="bold")
-    panels: Any = figure.subplots(1, len(NOISES), sharey=True)
-    for axes, noise in zip(panels, NOISES, strict=True):
+    noises = study.options.noises()
+    panels: Any = figure.subplots(1, len(noises), sharey=True, squeeze=False)[0]
+    for axes, noise in zip(panels, noises, strict=True):
         for k, method in enumerate(METHODS):
             for number, link in enumerate(study.links):
                 errors = [each.outcome.error for each in study.found(method.name, noise, link)]
@@ -30,7 +31,7 @@ def draw(figure: Figure, study: Study) -> None:
                 axes.plot([across] * len(shown), shown, "o", label=label, **style)
         axes.set_yscale("log")
         axes.axhline(10.0, color="#BBBBBB", lw=1, zorder=0)
-        axes.set_title(f"noise of {noise:g} %", fontsize="medium")
+        axes.set_title(study.options.title(noise), fontsize="medium")
         axes.set_xticks(range(len(study.links)), [_number(link) for link in study.links])
         axes.set_xlabel("link")
     panels[0].set_ylabel("error [mm]")

@@ -7,11 +7,11 @@ from rich.table import Table
 
 from ..bimbo2019.score import score
 from ..harness import print_tables, scaled, sheet
-from .methods import METHODS, NEAR, NOISES, PROBABLE
+from .methods import METHODS, NEAR, PROBABLE
 from .study import Study
 
 NOTES = (
-    "Random motions of an arm that leans on a sphere. Nothing is said of the noise.",
+    "Random motions of an arm that leans on a sphere. Nothing is said of noise in per cent.",
     "map: the last pose alone; filter: forgets; sampler: remembers.",
     "right: on the true link. mean, median: of the point, in mm.",
     "90 %: the stated region holds the point. unsure: said to be ambiguous.",
@@ -21,13 +21,13 @@ NOTES = (
 
 def print_study(study: Study, console: Console) -> None:
     """A table a noise, and how to read them."""
-    print_tables(console, [_table(study, noise) for noise in NOISES], NOTES)
+    print_tables(console, [_table(study, noise) for noise in study.options.noises()], NOTES)
 
 
 def _table(study: Study, noise: float) -> Table:
     figures = ("n", "right", "mean", "median", "90 %", "unsure", "near")
     friction = study.options.friction
-    title = f"Noise of {noise:g} %" + (f", friction {friction:g}" if friction else "")
+    title = study.options.title(noise) + (f", friction {friction:g}" if friction else "")
     shown = sheet(title, ("link", "method"), figures)
     for link in study.links:
         for method in METHODS:

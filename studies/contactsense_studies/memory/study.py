@@ -13,7 +13,8 @@ from ..bimbo2019.study import trial_seed
 from ..bimbo2019.trials import record
 from ..harness import Report, silent
 from ..parallel import run_trials
-from .methods import METHODS, NOISES, Found, locate
+from .calibrated import record_calibrated
+from .methods import METHODS, Found, locate
 from .options import Options
 
 # Runs at random poses and points, with random motions against a sphere.
@@ -67,14 +68,20 @@ def _trial(item: Item) -> Trial:
     options, link, number = item
     arm = load_arm(options.runs())
     seed = trial_seed(options.seed, EXPERIMENT, link, number)
+    calibration = None
     try:
-        experiment = replace(BY_NAME[EXPERIMENT], friction=options.friction)
-        recorded = record(arm, experiment, link, number, seed)
+        if options.imperfect:
+            recorded, calibration = record_calibrated(arm.robot, link, options.friction, seed)
+        else:
+            experiment = replace(BY_NAME[EXPERIMENT], friction=options.friction)
+            recorded = record(arm, experiment, link, number, seed)
     except InputError:
         return Trial(link, number, {})
     found = {
-        (method.name, noise): locate(arm.robot, recorded, method, noise, replace(options, seed=seed))
+        (method.name, noise): locate(
+            arm.robot, recorded, method, noise, replace(options, seed=seed), calibration
+        )
         for method in METHODS
-        for noise in NOISES
+        for noise in options.noises()
     }
     return Trial(link, number, found)
