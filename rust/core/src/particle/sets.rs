@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::adaptation::news;
 use super::beside::{Known, MOST_CONTACTS};
+use super::cloud::Cloud;
 use super::estimate::Event;
 use super::options::FilterOptions;
 use super::state::FilterState;
@@ -63,6 +64,7 @@ pub(super) struct Sets {
 impl Sets {
     pub fn new(robot: &Arc<Robot>, options: &FilterOptions) -> Result<Self> {
         options.check(robot)?;
+        Cloud::check_memory(options.particles * options.max_contacts)?;
         let stop = Arc::new(AtomicBool::new(false));
         let set = |k: usize| {
             let seed = options.seed.wrapping_add((k as u64).wrapping_mul(SEED));

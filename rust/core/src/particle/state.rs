@@ -69,7 +69,6 @@ impl FilterState {
     pub fn new(robot: Arc<Robot>, options: FilterOptions) -> Result<Self> {
         let wanted = options.check(&robot)?;
         let count = options.particles;
-        Cloud::check_memory(count)?;
         let noise = options.torque_noise(&robot)?;
         let threshold = options.threshold(&robot, &noise)?;
         let births = Births::new(&robot, &wanted, &options)?;
