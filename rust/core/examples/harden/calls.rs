@@ -52,7 +52,12 @@ impl Objects {
             samples: SAMPLES * random.below(2),
             ..IsolatorOptions::default()
         };
-        let filter = FilterOptions { particles: PARTICLES, seed: random.bits(), ..FilterOptions::default() };
+        let filter = FilterOptions {
+            particles: PARTICLES,
+            seed: random.bits(),
+            max_contacts: random.one_of(&[1, 3]),
+            ..FilterOptions::default()
+        };
         Ok(Objects {
             monitor: ContactMonitor::new(robot.clone(), &options)?,
             isolator: ContactIsolator::new(robot.clone(), &isolation)?,
@@ -243,7 +248,7 @@ fn filter(objects: &mut Objects, random: &mut Random) -> Result<bool> {
         objects.filter.reset();
     }
     objects.filter.update(&configuration(robot, random), &random.vector(robot.nv()))?;
-    Ok(all(objects.filter.weights()))
+    Ok(objects.filter.contacts().all(|contact| all(contact.weights())))
 }
 
 fn surface(objects: &mut Objects, random: &mut Random) -> bool {

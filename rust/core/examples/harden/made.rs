@@ -166,6 +166,7 @@ pub fn make(robot: &Arc<Robot>, random: &mut Random) -> (&'static str, Result<bo
                 relative_noise: random.number(2),
                 torque_threshold: random.once_in(2).then(|| random.vector(robot.nv())),
                 threads: random.one_of(&[0, 1, usize::MAX]),
+                max_contacts: random.one_of(&[0, 1, 4, usize::MAX]),
                 ..FilterOptions::default()
             };
             ("ContactParticleFilter::new", ContactParticleFilter::new(robot.clone(), options).map(|_| true))
