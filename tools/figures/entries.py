@@ -196,6 +196,16 @@ FIGURES = (
         long=True,
     ),
     Figure(
+        "memory_imperfect",
+        "The same on arms with the errors of real ones, calibrated before.",
+        (*STUDY, "memory", "--imperfect", "--json", "--trials", "10"),
+        "Ten trials a link, seed 0.",
+        "docs/memory.md",
+        reduce=memory.reduce,
+        table=memory.error_table,
+        long=True,
+    ),
+    Figure(
         "several_contacts_atlas",
         "Contacts of Atlas at the same time, with friction, on branches without sensors.",
         (*STUDY, "several_contacts", "--json", "--trials", "12", *ATLAS_CONTACTS),
