@@ -2,7 +2,6 @@
 
 use std::ops::RangeInclusive;
 
-use super::beside::MOST_CONTACTS;
 use super::schedule::Schedule;
 use crate::error::{Error, Result};
 use crate::robot::{Robot, LARGEST};
@@ -132,6 +131,8 @@ impl Default for FilterOptions {
 
 /// `torque_noise` says nothing of the slow errors that are left of bias and friction (Nm).
 const LEAST_THRESHOLD: f64 = 0.2;
+/// Contacts that there may be at the same time.
+pub(crate) const MOST_CONTACTS: usize = 4;
 /// As many particles or threads at most.
 const MOST_PARTICLES: usize = 10_000_000;
 const MOST_THREADS: usize = 256;

@@ -5,10 +5,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
 
 use super::adaptation::news;
-use super::beside::{Known, MOST_CONTACTS};
 use super::cloud::Cloud;
 use super::estimate::Event;
-use super::options::FilterOptions;
+use super::known::Known;
+use super::options::{FilterOptions, MOST_CONTACTS};
 use super::state::FilterState;
 use crate::error::Result;
 use crate::robot::Robot;

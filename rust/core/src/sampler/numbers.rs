@@ -6,9 +6,9 @@ use nalgebra::Vector3;
 
 use super::measurements::Measurement;
 use super::population::{Population, Scene};
-use super::sums::MOST_CONTACTS;
 use crate::math::chi_square::upper_limit;
 use crate::math::random::Stream;
+use crate::particle::MOST_CONTACTS;
 use crate::posterior::parallel::Course;
 use crate::posterior::tempering::Tempering;
 

@@ -1,12 +1,11 @@
 //! Options of the sampler.
 
 use crate::error::{Error, Result};
-use crate::particle::{whole, FilterOptions};
+use crate::particle::{whole, FilterOptions, MOST_CONTACTS};
 use crate::robot::Robot;
 use crate::torque::{ForceModel, NoiseModel};
 
 use super::hypothesis::ContactModel;
-use super::sums::MOST_CONTACTS;
 
 /// Measurements that a window holds at least and at most: one pose tells little, and each costs time and memory.
 const LEAST_WINDOW: usize = 2;

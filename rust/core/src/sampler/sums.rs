@@ -7,14 +7,14 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Matrix2, Vector2};
 
+use crate::particle::MOST_CONTACTS;
 use crate::torque::{NormalFit, SeveralPushes};
 
 /// Force and stiffness are not told apart where the determinant of their precision is this share of the product of its diagonal.
 const SINGULAR: f64 = 1e-12;
 /// Torques of so many standard deviations over the whole range of a number are not felt.
 const UNFELT: f64 = 1e-3;
-/// Contacts at most, and so twice as many numbers.
-pub(crate) const MOST_CONTACTS: usize = 4;
+/// A force and a stiffness for each contact.
 const MOST_NUMBERS: usize = 2 * MOST_CONTACTS;
 /// Rounds of holding numbers at the ends of their ranges, for each contact; they end where letting go of any would lessen the misfit
 /// by less than this share of all torques.
