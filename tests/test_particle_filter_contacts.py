@@ -6,13 +6,14 @@ import pickle
 
 import numpy as np
 import pytest
+from parts_of_runs import torque_of
 
 import contactsense as cs
 from contactsense.sim import TorqueNoise, atlas
 from contactsense_studies.several_contacts.data import as_data
 from contactsense_studies.several_contacts.judge import Judged, judge_several
 from contactsense_studies.several_contacts.options import Options
-from contactsense_studies.several_contacts.runs import SeveralRun, record_several
+from contactsense_studies.several_contacts.runs import record_several
 from contactsense_studies.several_contacts.study import run
 
 ARM_NOISE = {"newton_metres": 0.02, "percent": 3.0}
@@ -21,15 +22,6 @@ ARM_NOISE = {"newton_metres": 0.02, "percent": 3.0}
 @pytest.fixture(scope="module")
 def arm() -> cs.Robot:
     return cs.Robot.named("iiwa14")
-
-
-def torque_of(robot: cs.Robot, run: SeveralRun, contact: int) -> np.ndarray:
-    """The external torques of one of the contacts alone."""
-    rows = [
-        robot.jacobian(q, run.links[contact], run.points[k, contact])[:3].T @ run.forces[k, contact]
-        for k, q in enumerate(run.q)
-    ]
-    return np.array(rows)
 
 
 def test_one_contact_is_what_a_filter_of_one_finds(arm: cs.Robot) -> None:

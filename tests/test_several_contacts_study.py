@@ -6,6 +6,7 @@ import pickle
 
 import numpy as np
 import pytest
+from parts_of_runs import torque_of
 
 import contactsense as cs
 from contactsense.sim import TorqueNoise, atlas
@@ -88,7 +89,7 @@ def test_two_contacts_on_a_humanoid() -> None:
 
 def test_contacts_come_and_go(arm: cs.Robot) -> None:
     run = record_several(arm, ("iiwa_link_4", "iiwa_link_7"), 2, 24, seed=7)
-    alone = record_one_of(arm, run, 1)
+    alone = torque_of(arm, run, 1)
     sampler = cs.StaticObstacleSampler(arm, particles=4000, max_contacts=2)
     noise = TorqueNoise(newton_metres=0.02, percent=3.0, seed=7)
     numbers, events = [], []
@@ -101,15 +102,6 @@ def test_contacts_come_and_go(arm: cs.Robot) -> None:
     assert numbers[-1] == 2
     assert events[10] == "changed"
     assert judge_several(estimate, run, -1).links_right
-
-
-def record_one_of(robot: cs.Robot, run: SeveralRun, contact: int) -> np.ndarray:
-    """The external torques of one of the contacts alone."""
-    rows = [
-        robot.jacobian(q, run.links[contact], run.points[k, contact])[:3].T @ run.forces[k, contact]
-        for k, q in enumerate(run.q)
-    ]
-    return np.array(rows)
 
 
 def test_bad_numbers_of_contacts_are_refused(arm: cs.Robot) -> None:
