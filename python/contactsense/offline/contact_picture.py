@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .._contact_view import ShownContact, draw_contact
+from .._core import Robot
 from .._pictures import DETECTED, ESTIMATE, GREY, TEXT, save_picture
 from .._places import Places, draw_places, link_colours, link_legend
 from .._robot_view import FloatArray, body, eye, share_scale
-from .result import Replay, ReplayedContact
+from ..log import Log
+from .contact import ReplayedContact
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,7 +32,22 @@ _LEGEND = (
 _POINTS = 4000
 
 
-def save_contact_picture(argument: str, path: Path, title: str, result: Replay) -> Path:
+class _Replayed(Protocol):
+    """What the picture shows of a replay."""
+
+    @property
+    def robot(self) -> Robot: ...
+    @property
+    def log(self) -> Log: ...
+    @property
+    def ticks(self) -> Mapping[str, NDArray[Any]]: ...
+    @property
+    def contact_ticks(self) -> Mapping[str, NDArray[Any]]: ...
+    @property
+    def contacts(self) -> Sequence[ReplayedContact]: ...
+
+
+def save_contact_picture(argument: str, path: Path, title: str, result: _Replayed) -> Path:
     """Above, where on the robot the contacts are; below, torque and contacts over time."""
 
     def draw(figure: Figure) -> None:
@@ -51,7 +69,7 @@ def save_contact_picture(argument: str, path: Path, title: str, result: Replay) 
     return save_picture(argument, path, _SIZE, draw)
 
 
-def _draw_few(figure: Figure, result: Replay) -> None:
+def _draw_few(figure: Figure, result: _Replayed) -> None:
     """A drawing of the robot for each contact, at the time of its greatest force."""
     if not result.contacts:
         axes = figure.subplots()
@@ -70,7 +88,7 @@ def _draw_few(figure: Figure, result: Replay) -> None:
     figure.supxlabel(_LEGEND, fontsize=10, color=TEXT)
 
 
-def _shown(result: Replay, contact: ReplayedContact) -> ShownContact:
+def _shown(result: _Replayed, contact: ReplayedContact) -> ShownContact:
     """A contact at its greatest force, with the place that was known at its end."""
     ticks = result.contact_ticks
     own = np.flatnonzero(ticks["id"] == contact.id)
@@ -89,7 +107,7 @@ def _caption(contact: ReplayedContact) -> str:
     return f"{contact.start:.2f} s: {contact.link}{force}\n{known}"
 
 
-def _draw_many(figure: Figure, result: Replay, colours: Mapping[str, str]) -> None:
+def _draw_many(figure: Figure, result: _Replayed, colours: Mapping[str, str]) -> None:
     """The robot at its first contact with the places of all."""
     placed = [contact for contact in result.contacts if np.all(np.isfinite(contact.point_local))]
     places = Places(
@@ -102,19 +120,19 @@ def _draw_many(figure: Figure, result: Replay, colours: Mapping[str, str]) -> No
     views[0].set_title(f"{len(placed)} of the contacts have a point")
 
 
-def _pose(result: Replay) -> FloatArray:
+def _pose(result: _Replayed) -> FloatArray:
     """That of the first contact."""
     rows = result.contact_ticks["row"]
     q: FloatArray = result.log.q[int(rows[0]) if len(rows) else 0]
     return q
 
 
-def _start(result: Replay) -> float:
+def _start(result: _Replayed) -> float:
     time = result.ticks["time"]
     return float(time[0]) if len(time) else 0.0
 
 
-def _draw_torque(axes: Axes, result: Replay) -> None:
+def _draw_torque(axes: Axes, result: _Replayed) -> None:
     time = result.ticks["time"]
     every = max(1, len(time) // _POINTS)
     torque = result.ticks["external_torque"][::every]
@@ -124,7 +142,7 @@ def _draw_torque(axes: Axes, result: Replay) -> None:
     _finish(axes)
 
 
-def _draw_force(axes: Axes, result: Replay) -> None:
+def _draw_force(axes: Axes, result: _Replayed) -> None:
     """In place of the torque, most of which is the ground's where the base is free."""
     ticks = result.contact_ticks
     for contact in result.contacts:
@@ -143,13 +161,13 @@ def _finish(axes: Axes) -> None:
     axes.margins(x=0.0, y=0.15)
 
 
-def _draw_spans(axes: Axes, result: Replay, colours: Mapping[str, str]) -> None:
+def _draw_spans(axes: Axes, result: _Replayed, colours: Mapping[str, str]) -> None:
     for contact in result.contacts:
         ends = contact.start - _start(result), contact.end - _start(result)
         axes.axvspan(*ends, color=colours[contact.link], alpha=0.3, linewidth=0.0)
 
 
-def _name_spans(axes: Axes, result: Replay) -> None:
+def _name_spans(axes: Axes, result: _Replayed) -> None:
     for contact in result.contacts:
         middle = 0.5 * (contact.start + contact.end) - _start(result)
         place = axes.get_xaxis_transform()

@@ -9,10 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from .result import ReplayedContact
-
-# Of the class of a contact.
-PROBABILITIES = ("clamped", "transient", "sustained", "intended")
+from .contact import PROBABILITIES, ReplayedContact
 
 
 def contacts_of(
