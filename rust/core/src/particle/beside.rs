@@ -10,7 +10,8 @@ use super::instant::Instant;
 use super::known::{Known, Unknown, FORCES, PLACES};
 use super::options::MOST_CONTACTS;
 use super::response::ResponseModel;
-use crate::torque::{directions, NormalEquations};
+use crate::spatial::vector::split;
+use crate::torque::NormalEquations;
 
 const UNKNOWNS: usize = (FORCES + PLACES) * (MOST_CONTACTS - 1);
 const _: () = assert!(FORCES * MOST_CONTACTS <= UNKNOWNS, "the forces of all contacts are fitted together");
@@ -127,10 +128,10 @@ impl Beside {
         let Instant { frames, target, measured, torque, deviation, .. } = instant;
         torque.copy_from_slice(measured);
         for (contact, known) in others.iter().enumerate() {
-            let (directions, deviations) = (directions(&known.normal), known.deviations(model));
             let share = |a: usize| found[FORCES * contact + a];
             if share(0) > 0.0 {
-                let force = (0..FORCES).map(|a| directions[a] * (deviations[a] * share(a))).sum();
+                let forces = known.forces(model);
+                let force = (0..FORCES).map(|a| split(&forces[a].wrench).0 * share(a)).sum();
                 frames.subtract(known.link, &known.point, &force, deviation, torque);
             }
         }

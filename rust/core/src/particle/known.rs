@@ -89,7 +89,7 @@ impl Known {
     }
 
     /// Standard deviations of the three forces.
-    pub fn deviations(&self, model: &ResponseModel) -> [f64; FORCES] {
+    fn deviations(&self, model: &ResponseModel) -> [f64; FORCES] {
         let friction = model.force_model.deviation_across(self.force).unwrap_or(0.0);
         let tilt = (self.spread / ROUND).clamp(TILT[0], TILT[1]);
         let across = friction.hypot(tilt * self.force);

@@ -39,6 +39,11 @@ impl Set {
     /// At the start.
     fn reset(&mut self) {
         self.state.reset();
+        self.forget();
+    }
+
+    /// Forgets what it has explained, and whether it was sure.
+    fn forget(&mut self) {
         (self.idle, self.since_sure) = (0.0, f64::INFINITY);
     }
 
@@ -100,7 +105,7 @@ impl Sets {
     /// There is no contact. A set that is not in use is reset when it is added.
     fn forget(&mut self) {
         (self.count, self.settled) = (1, 0.0);
-        (self.sets[0].idle, self.sets[0].since_sure) = (0.0, f64::INFINITY);
+        self.sets[0].forget();
     }
 
     /// Takes in a measurement.
@@ -114,24 +119,26 @@ impl Sets {
 
     /// Updates particles and estimates by the measurement that was read.
     pub fn step(&mut self) {
+        let news = self.news();
         if self.count > 1 {
             self.sets[..self.count].iter_mut().for_each(|set| set.state.follow_known());
         }
         for k in 0..self.count {
-            self.step_of(k);
+            self.step_of(k, news);
         }
         if self.first().found.estimate.contact.is_none() {
             self.forget();
         } else if self.sets.len() > 1 && !self.stop.load(Ordering::Relaxed) {
-            self.change_number();
+            self.change_number(news);
         }
         self.updates += 1;
         self.tell();
     }
 
-    /// Which share of the measurement is new.
+    /// Which share of the measurement that was read is new. A contact that is looked for anew forgets how the robot came to its pose, so
+    /// this is asked before any of them takes a step.
     fn news(&self) -> f64 {
-        news(self.first().instant.displacement())
+        news(if self.updates == 0 { 0.0 } else { self.first().instant.displacement() })
     }
 
     /// Contact k looks at what it has read beside what is known of the others; says whether there are any.
@@ -148,9 +155,9 @@ impl Sets {
         count > 0
     }
 
-    /// Contact k takes in what it has read.
-    fn step_of(&mut self, k: usize) {
-        let (several, news, many) = (self.look_beside(k), self.news(), self.sets.len() > 1);
+    /// Contact k takes in what it has read, of which this share is new.
+    fn step_of(&mut self, k: usize, news: f64) {
+        let (several, many) = (self.look_beside(k), self.sets.len() > 1);
         let set = &mut self.sets[k];
         set.state.stays = many && set.since_sure < LOYAL;
         set.state.step();
@@ -166,8 +173,7 @@ impl Sets {
     }
 
     /// Drops a contact that explains nothing, or adds one where all together do not explain the torques.
-    fn change_number(&mut self) {
-        let news = self.news();
+    fn change_number(&mut self, news: f64) {
         self.settled += news;
         let explained = self.of_contacts().any(|state| state.found.explained);
         for set in &mut self.sets[..self.count] {
@@ -181,16 +187,16 @@ impl Sets {
             self.count -= 1;
             self.changed();
         } else if self.count < self.sets.len() && !explained && self.settled >= SETTLED {
-            self.add();
+            self.add(news);
             self.changed();
         }
     }
 
-    fn add(&mut self) {
+    fn add(&mut self, news: f64) {
         let k = self.count;
         self.count += 1;
         self.sets[k].reset();
-        self.step_of(k);
+        self.step_of(k, news);
         for j in 0..k {
             // What was sure stays so. Otherwise it was found as if the new one were not there.
             if !self.sets[j].state.stays {
