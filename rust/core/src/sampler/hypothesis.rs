@@ -87,6 +87,11 @@ pub(super) struct Contact {
     pub touch: Touch,
 }
 
+/// Has contacts touch elsewhere.
+pub(super) fn put<const N: usize>(contacts: &mut [Contact; N], touches: [Touch; N]) {
+    contacts.iter_mut().zip(touches).for_each(|(contact, touch)| contact.touch = touch);
+}
+
 /// Claims of some contacts, and what the measurements say of them together.
 #[derive(Debug, Clone)]
 pub(super) struct Hypothesis<const N: usize> {

@@ -6,9 +6,9 @@
 use nalgebra::Vector3;
 
 use super::hypothesis::Claim;
-use super::path::ContactPath;
 use crate::math::random::Stream;
 use crate::robot::Robot;
+use crate::spatial::Pose;
 
 /// How far the place moves: the logarithm of the standard deviation along each axis is uniform between those of these (m).
 const ASIDE: [f64; 2] = [2e-3, 5e-2];
@@ -35,26 +35,30 @@ impl Neighbours {
     fn beside(&self, link: u32) -> &[u32] {
         &self.0[link as usize]
     }
-}
 
-impl<const N: usize> ContactPath<'_, N> {
-    /// Another claim on a link beside, and the logarithm of how many times as likely the way back is proposed. The places are taken to
-    /// be on parallel surfaces: then each leads to the other as easily.
-    pub(super) fn beside(&self, mut claim: Claim, random: Stream) -> Option<(Claim, f64)> {
-        let own = self.neighbours.beside(claim.link);
+    /// Another claim on a link beside, of links at their first poses, and the logarithm of how many times as likely the way back is
+    /// proposed. The places are taken to be on parallel surfaces: then each leads to the other as easily.
+    pub fn claim_beside(
+        &self,
+        mut claim: Claim,
+        robot: &Robot,
+        poses: &[Pose],
+        random: Stream,
+    ) -> Option<(Claim, f64)> {
+        let own = self.beside(claim.link);
         let link = *own.get((random.uniform(0) * own.len() as f64) as usize)?;
         let scale = ASIDE[0] * (ASIDE[1] / ASIDE[0]).powf(random.uniform(1));
         let ([x, y], [z, _]) = (random.normals(2), random.normals(4));
-        let first = |link: u32| &self.measurements.first[link as usize];
+        let first = |link: u32| &poses[link as usize];
         let place = first(claim.link).transform_point(&claim.place.point) + Vector3::new(x, y, z) * scale;
-        let surface = self.surface(link)?;
+        let surface = robot.links()[link as usize].surface.as_deref()?;
         let near = surface.closest_point(&first(link).inverse_transform_point(&place));
         if surface.hides(&near.point, near.triangle) {
             return None;
         }
         claim.link = link;
         claim.place = near.into();
-        Some((claim, (own.len() as f64 / self.neighbours.beside(link).len() as f64).ln()))
+        Some((claim, (own.len() as f64 / self.beside(link).len() as f64).ln()))
     }
 }
 
