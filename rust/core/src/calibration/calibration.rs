@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::fingerprint::fingerprint;
-use super::torque_model::{Friction, TorqueModel, REVERSALS};
+use super::friction::{Friction, REVERSALS};
 use super::Tail;
 use crate::error::{Error, Result};
 use crate::robot::check::principal_moments;
@@ -349,11 +349,6 @@ impl Calibration {
             ForceTorqueSensor { offset: known.map_or(sensor.offset, |(_, offset)| *offset), ..sensor.clone() }
         };
         sensors.iter().map(of).collect()
-    }
-
-    /// What corrects velocities and torques.
-    pub(crate) fn torque_model(&self) -> TorqueModel {
-        TorqueModel::new(self)
     }
 }
 

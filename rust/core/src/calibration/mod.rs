@@ -12,6 +12,7 @@ mod false_alarms;
 mod file;
 mod fingerprint;
 mod folds;
+mod friction;
 mod hysteresis;
 mod judged;
 mod lead;
@@ -36,9 +37,9 @@ pub use crate::detection::Tail;
 pub use calibrate::calibrate;
 pub use calibration::{BodyInertia, Calibration, CalibrationOptions, Payload};
 pub use excitation::{exciting_motion, Excitation, ExcitationPlanner, Motion};
+pub use friction::{Friction, Reversal};
 pub use log::Log;
 pub(crate) use torque_model::TorqueModel;
-pub use torque_model::{Friction, Reversal};
 
 /// A step from row to row that is so many times the usual one is a gap.
 const LONGEST_STEPS: f64 = 10.0;

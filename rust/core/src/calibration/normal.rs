@@ -2,9 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::friction::REVERSALS;
 use super::hysteresis::WIDTHS;
 use super::rows::{Row, Term};
-use super::torque_model::REVERSALS;
 use super::unknowns::{Unknowns, ARMATURE, BIAS, COULOMB, HYSTERESIS, TERMS, VISCOUS};
 
 const FIRST_FRICTION: usize = 1;

@@ -8,13 +8,14 @@ use super::calibration::{armature, body_inertia};
 use super::complete_fit::Fit;
 use super::contacts::stretches;
 use super::folds::mean_square;
+use super::friction::{Friction, REVERSALS};
 use super::hysteresis::WIDTHS;
 use super::judged::Judged;
 use super::log::Log;
 use super::noise::{estimate, RELATIVE};
 use super::notes::{notes, JointFacts};
 use super::rest_errors::rest_errors;
-use super::torque_model::{Friction, REVERSALS};
+use super::torque_model::TorqueModel;
 use super::uncertainty::TORQUE_SCALE;
 use super::unknowns::{ARMATURE, BIAS, COULOMB, HYSTERESIS, VISCOUS};
 use super::{Calibration, CalibrationOptions, Payload, Tail};
@@ -187,7 +188,7 @@ impl Fit {
             let found = self.found(robot, z, options);
             Ok(Judged {
                 robot: if options.torque_is_external { None } else { Some(found.corrected(robot)?.into()) },
-                torque: found.torque_model(),
+                torque: TorqueModel::new(&found),
                 rows: self.log_rows(block, solutions.len(), log.len()),
             })
         };

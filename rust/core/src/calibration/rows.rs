@@ -5,10 +5,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::friction::Reversal;
 use super::hysteresis::Stops;
 use super::lead::Lead;
 use super::log::Log;
-use super::torque_model::Reversal;
 use crate::robot::configuration::spread_torque;
 use crate::robot::{Kinematics, MomentumPass, MomentumRegressor, Robot};
 

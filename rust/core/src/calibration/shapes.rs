@@ -3,10 +3,10 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::folds::{block_of, is_less, HeldOut, BLOCKS};
+use super::friction::REVERSALS;
 use super::hysteresis::WIDTHS;
 use super::normal::{own_terms, residual, Joints, Shape};
 use super::rows::Row;
-use super::torque_model::REVERSALS;
 use super::unknowns::{Unknowns, HYSTERESIS, TERMS};
 
 /// White noise moves the elements of hysteresis too: the first width is at least so many of its standard deviations.

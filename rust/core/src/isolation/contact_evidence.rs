@@ -3,7 +3,7 @@
 
 use nalgebra::Vector6;
 
-use super::surface_contact::TorqueNow;
+use super::torque_now::TorqueNow;
 use crate::robot::{Kinematics, Robot};
 use crate::sensor::{exclude_wanted, leave_out_blind, sensor_torque, SensorTree};
 use crate::torque::{SensorMount, TorqueNoise, LEVEL, SENSOR_RELATIVE, WRENCH};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::{Cholesky, Matrix3, Matrix6, Vector6};
 
 use super::contact_evidence::ContactEvidence;
-use super::surface_contact::TorqueNow;
+use super::torque_now::TorqueNow;
 use crate::map::Measurement;
 use crate::robot::{LinkIndex, Robot};
 use crate::sensor::SensorTree;

@@ -2,13 +2,12 @@
 //! body around may explain the torques as well or better. The most likely pair contradicts all torques least.
 
 use super::found::{Entry, Scene};
+use super::hypothesis::{Hypothesis, TRIED};
 use super::pair::{estimate_pair, PairEstimate};
-use super::report::LINE_UNKNOWNS;
-use super::rivals::UNLIKELY;
 use super::rows::TorqueRows;
 use super::several::{SeveralContacts, GOOD, PAIR_WORK};
 use super::surface_search::steepness;
-use super::wrench::DEVIATION;
+use super::wrench::{DEVIATION, LINE_UNKNOWNS, UNLIKELY};
 use crate::math::chi_square::upper_limit;
 use crate::robot::WORLD;
 
@@ -16,8 +15,6 @@ use crate::robot::WORLD;
 const AROUND: usize = 2;
 /// Rounds over both contacts until the bodies stand still.
 const ROUNDS: usize = 3;
-/// Pairs of bodies that are tried in a call: what its work permits.
-pub(super) const TRIED: usize = 96;
 /// What a pair may leave of the torques.
 #[derive(Clone, Copy)]
 enum Most {
@@ -34,15 +31,6 @@ impl Most {
             Most::Good => checks as f64 * (GOOD / DEVIATION).powi(2),
         }
     }
-}
-
-/// Two bodies that may be touched, and how well forces on them explain the torques.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Hypothesis {
-    bodies: [usize; 2],
-    /// Of all torques of the region, with what displaces a line so that it enters its body, and of forces across normals.
-    chi_square: f64,
-    entries: [Option<Entry>; 2],
 }
 
 /// Of all torques; `inside` is the sum of squares, in tolerances, of those that a force on one of the bodies moves.

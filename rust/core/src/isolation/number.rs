@@ -2,8 +2,6 @@
 
 use super::found::Scene;
 use super::isolator::ContactIsolator;
-use super::report::LINE_UNKNOWNS;
-use crate::math::chi_square::upper_limit;
 use crate::robot::Kinematics;
 
 impl ContactIsolator {
@@ -33,16 +31,5 @@ impl ContactIsolator {
             self.report_several(kinematics);
         }
         two
-    }
-
-    /// Of all torques, for one force on a body; none where they do not determine it.
-    fn chi_square_of_one(&self, kinematics: &Kinematics, body: usize) -> Option<f64> {
-        let wrench = self.estimate(kinematics, body);
-        (wrench.rank == 6).then(|| wrench.chi_square().0 + self.chi_square_outside(body))
-    }
-
-    /// What noise alone leaves of that.
-    fn most_of_one(&self) -> f64 {
-        upper_limit(self.torque_count().saturating_sub(LINE_UNKNOWNS))
     }
 }

@@ -6,6 +6,9 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::robot::LinkIndex;
 
+/// Points of a contact's path that are kept at most.
+pub(crate) const MOST_POINTS: usize = 32;
+
 /// What the posterior over all of the robot's surface says of a contact.
 ///
 /// ```

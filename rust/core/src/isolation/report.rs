@@ -6,7 +6,7 @@ use super::force::{explain_force, identify_force};
 use super::found::Found;
 use super::isolator::{ContactIsolator, CONTRADICTION};
 use super::result::{Candidate, Contact, ContactPlace};
-use super::wrench::{WrenchEstimate, ORIGIN};
+use super::wrench::{WrenchEstimate, LINE_UNKNOWNS, ORIGIN};
 use crate::math::chi_square::upper_limit;
 use crate::robot::jacobian::for_each_column;
 use crate::robot::{Kinematics, LinkIndex, Robot};
@@ -17,8 +17,6 @@ const SHARP: f64 = 0.01;
 /// Radius that holds 90 % of a normal distribution, in standard deviations of the distance: at most this, which is for a
 /// distribution along a line (for a circular one it is 1.52).
 const RADIUS_90: f64 = 1.645;
-/// Unknowns of a force on a line of action: a contact is checked only by torques beyond these.
-pub(super) const LINE_UNKNOWNS: usize = 5;
 /// Root mean square of the distance from one of two equally likely places, as a share of the distance between them.
 const EQUALLY_LIKELY: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Solutions whose points are nearer than this agree (m).
@@ -135,11 +133,6 @@ impl ContactIsolator {
     /// Whether 90 % of the places are within the distance asked for.
     fn is_near_enough(&self, point_std: f64) -> bool {
         RADIUS_90 * point_std <= self.locate_within
-    }
-
-    /// Torques of the region.
-    pub(super) fn torque_count(&self) -> usize {
-        self.region.feels.iter().filter(|feels| **feels).count()
     }
 
     /// Standard deviation of the point (m): of the line across the surface, or as far as lines displaced by twice

@@ -5,13 +5,12 @@ use std::ops::Range;
 use nalgebra::{Vector3, Vector6};
 
 use super::determined_wrench::{DeterminedWrench, WrenchPosterior};
-use super::posterior::{ContactPosterior, LinkProbability, PathPoint, Track};
-use super::surface_contact::TorqueNow;
+use super::posterior::{ContactPosterior, LinkProbability, PathPoint, Track, MOST_POINTS};
+use super::torque_now::TorqueNow;
 use crate::posterior::{Mode, MOST_MODES};
 use crate::robot::LinkIndex;
 use crate::sensor::{SensorIndex, SensorTree};
 use crate::spatial::vector::split;
-use crate::tracking::MOST_POINTS;
 
 /// All hits of one instant that are kept.
 pub(super) const CANDIDATES: usize = 512;

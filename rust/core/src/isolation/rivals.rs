@@ -4,12 +4,9 @@
 use super::isolator::ContactIsolator;
 use super::line::{best_first, farthest_entry, is_covered};
 use super::result::{Candidate, Isolation};
-use super::wrench::{WrenchEstimate, DEVIATION, ORIGIN};
+use super::wrench::{WrenchEstimate, DEVIATION, ORIGIN, UNLIKELY};
 use crate::robot::jacobian::jacobian_column;
 use crate::robot::Kinematics;
-
-/// A hypothesis is unlikely if its chi-square exceeds the best one's by this: a likelihood ratio of 100.
-pub(super) const UNLIKELY: f64 = 9.21;
 
 /// What else the torques allow.
 #[derive(Debug, Clone, Copy)]
@@ -58,23 +55,6 @@ impl ContactIsolator {
             }
         }
         rivals
-    }
-
-    /// Sum of squares of the torques of joints that a force on `body` does not move, in standard deviations.
-    pub(super) fn chi_square_outside(&self, body: usize) -> f64 {
-        let chain = self.robot.chain(body);
-        let mut next = 0;
-        let mut sum = 0.0;
-        for joint in 1..self.robot.body_count() {
-            // Chains are in rising order.
-            if chain.get(next) == Some(&joint) {
-                next += 1;
-            } else if self.region.joints[joint] {
-                let range = self.robot.velocity_range(joint);
-                sum += range.map(|k| (self.residual[k] / self.limit[k]).powi(2)).sum::<f64>();
-            }
-        }
-        sum / (DEVIATION * DEVIATION)
     }
 
     /// Marks the bodies that cannot carry the force, by two tests that are cheap: a torque that is not noise must be of

@@ -129,6 +129,16 @@ impl TorqueRows {
         }
     }
 
+    /// The total wrench that the joints up to `body`, and a sensor, feel.
+    pub fn total_wrench(&self, robot: &Robot, region: &Region, body: usize) -> WrenchEstimate {
+        let mut rows = WrenchRows::new();
+        self.push_root(&mut rows);
+        for joint in region.chain(robot, body) {
+            self.push_joint(robot, joint, &mut rows);
+        }
+        WrenchEstimate::from_rows(rows)
+    }
+
     /// Adds the total wrench if there is one.
     pub fn push_root(&self, rows: &mut WrenchRows) {
         if let Some(root) = &self.root {

@@ -9,11 +9,10 @@ use super::result::Contact;
 use super::rows::{Root, SENSOR_SHARE};
 use super::wrench::WrenchEstimate;
 use crate::detection::is_over;
-use crate::error::{Error, Result};
 use crate::observer::WrenchObserver;
 use crate::robot::jacobian::jacobian_column;
 use crate::robot::Kinematics;
-use crate::sensor::{sensor_torque, SensorIndex, SensorTree};
+use crate::sensor::{sensor_torque, SensorIndex};
 use crate::spatial::vector::{moved, split, stack};
 use crate::torque::{largest, LEVEL};
 
@@ -231,24 +230,4 @@ fn moved_squares(wrench: &Vector6<f64>, arm: &Vector3<f64>) -> Vector6<f64> {
         arms.x * forces.y + arms.y * forces.x,
     );
     stack(&forces, &(moments + turned))
-}
-
-/// One for each sensor, finite or none.
-pub(super) fn check_wrenches(tree: &SensorTree, wrenches: &[Option<Vector6<f64>>]) -> Result<()> {
-    if wrenches.len() != tree.len() {
-        return Err(Error::input(
-            "wrenches",
-            format!("expected one for each of the {} sensors, got {}", tree.len(), wrenches.len()),
-        ));
-    }
-    for (name, wrench) in tree.names().iter().zip(wrenches) {
-        let Some(wrench) = wrench else { continue };
-        if let Some(value) = wrench.iter().find(|x| x.is_nan() || x.abs() > crate::robot::LARGEST) {
-            return Err(Error::input(
-                "wrenches",
-                format!("that of '{name}' has {value}; give finite numbers [N, Nm], or none (NaN in NumPy) to leave it out"),
-            ));
-        }
-    }
-    Ok(())
 }

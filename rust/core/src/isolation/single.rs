@@ -3,27 +3,15 @@
 use super::found::Scene;
 use super::isolator::{ContactIsolator, SIGNIFICANCE};
 use super::line::best_first;
+use super::one_wrench::EXACT_FIT;
 use super::result::{Candidate, Isolation};
-use super::wrench::{estimate_wrench, WrenchEstimate};
+use super::wrench::WrenchEstimate;
 use crate::robot::Kinematics;
 
 /// Rounds until the contact link stands still; ten, as in Vorndamme 2017.
 const ROUNDS: usize = 10;
-/// A misfit that chance brings about once in a thousand times [thresholds].
-const EXACT_FIT: f64 = 1e-3;
 
 impl ContactIsolator {
-    /// Whether one force explains the torques but for rounding.
-    pub(super) fn is_single(&self, kinematics: &Kinematics, tip: usize) -> bool {
-        let wrench = self.estimate(kinematics, tip);
-        wrench.rank == 6 && wrench.misfit() <= EXACT_FIT
-    }
-
-    /// The wrench on a body that explains the torques before it best.
-    pub(super) fn estimate(&self, kinematics: &Kinematics, body: usize) -> WrenchEstimate {
-        estimate_wrench(&self.robot, kinematics, body, &self.residual, &self.limit)
-    }
-
     /// A force on one branch: steps 1 to 4, repeated with the link that was hit.
     pub(super) fn isolate_single(&mut self, kinematics: &Kinematics, tip: usize) {
         let mut body = tip;

@@ -6,12 +6,13 @@ use nalgebra::Vector3;
 
 use super::contact_evidence::ContactEvidence;
 use super::posterior::{ContactPosterior, LinkProbability};
-use super::report::LINE_UNKNOWNS;
 use super::result::{Contact, ContactPlace, Isolation};
+use super::torque_now::TorqueNow;
+use super::wrench::LINE_UNKNOWNS;
 use crate::error::Result;
 use crate::map::{MapOptions, Measurement, Summary, SurfacePosterior, GREATEST_FORCE};
 use crate::posterior::{Mode, MOST_MODES};
-use crate::robot::{Kinematics, LinkIndex, Robot};
+use crate::robot::{LinkIndex, Robot};
 use crate::sensor::SensorTree;
 use crate::spatial::vector::stack;
 use crate::torque::{best_cone_force, directions, BestForce, ForceModel, TorqueNoise};
@@ -30,16 +31,6 @@ const LIKELY: f64 = 3.0;
 const TYPICAL: f64 = 2.0;
 /// A closed form gives a contact's point if that is not farther from the posterior's than its region's radius, or this (m).
 const AGREES: f64 = 0.01;
-
-/// The rows of a measurement with their standard deviations.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct TorqueNow<'a> {
-    pub kinematics: &'a Kinematics,
-    /// External torque, then the wrenches of sensors (Nm, N).
-    pub torque: &'a [f64],
-    /// Their standard deviations without contact (Nm, N).
-    pub deviation: &'a [f64],
-}
 
 /// The posterior of one contact, and what it says of a torque.
 #[derive(Debug, Clone)]

@@ -15,6 +15,10 @@ pub(super) const RANK_TOLERANCE: f64 = 1e-7;
 pub(super) const SVD_ITERATIONS: usize = 200;
 /// Standard deviation of a torque in thresholds: thresholds are taken to lie three standard deviations above zero.
 pub(super) const DEVIATION: f64 = 1.0 / 3.0;
+/// Unknowns of a force on a line of action: a contact is checked only by torques beyond these.
+pub(super) const LINE_UNKNOWNS: usize = 5;
+/// A hypothesis is unlikely if its chi-square exceeds the best one's by this: a likelihood ratio of 100.
+pub(super) const UNLIKELY: f64 = 9.21;
 
 /// The kinematics' origin, which the moments of all wrenches refer to: so a rank is the same wherever it is asked for.
 pub(super) const ORIGIN: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);

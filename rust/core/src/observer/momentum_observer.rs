@@ -108,7 +108,7 @@ impl MomentumObserver {
     /// [`Error::Input`] also where the calibration is of another robot.
     pub fn calibrated(robot: &Robot, dt: f64, gain: &[f64], calibration: &Calibration) -> Result<Self> {
         let robot = Arc::new(calibration.corrected(robot)?);
-        Ok(Self { calibration: Some(calibration.torque_model()), ..Self::new(robot, dt, gain)? })
+        Ok(Self { calibration: Some(TorqueModel::new(calibration)), ..Self::new(robot, dt, gain)? })
     }
 
     /// One control tick; returns the external torque `(nv,)`.

@@ -6,5 +6,4 @@ mod path;
 mod tracker;
 
 pub(crate) use evidence::TickEvidence;
-pub(crate) use path::MOST_POINTS;
 pub(crate) use tracker::ContactTracker;

@@ -2,10 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::isolation::{Contact, PathPoint};
+use crate::isolation::{Contact, PathPoint, MOST_POINTS};
 
-/// Points that are kept at most.
-pub(crate) const MOST_POINTS: usize = 32;
 /// Nearer places are one (m), and those of closed forms also within so many of their standard deviations.
 const FAR: f64 = 0.01;
 const SURELY: f64 = 3.0;

@@ -3,6 +3,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use super::*;
 use crate::robot::Robot;
 use crate::spatial::vector::stack;
+use crate::torque::directions;
 use crate::torque::{ForceModel, NoiseModel};
 
 const POSE: [f64; 7] = [0.3, 0.8, -0.4, 0.9, 0.5, 0.7, 0.2];
