@@ -16,6 +16,7 @@ use super::measurements::{Logs, Measurements};
 use super::options::MapOptions;
 use super::surface_samples::SurfaceSamples;
 use crate::error::Result;
+use crate::posterior::parallel::Course;
 use crate::posterior::resampling::normalise;
 use crate::posterior::Clusters;
 use crate::robot::{Kinematics, Robot};
@@ -365,7 +366,7 @@ impl SurfacePosterior {
         self.log_weights.extend(self.leaves.iter().map(|leaf| leaf.log_weight));
         self.weights.clear();
         self.weights.resize(self.leaves.len(), 0.0);
-        let weighed = normalise(&mut self.log_weights, &mut self.weights);
+        let weighed = normalise(&mut self.log_weights, &mut self.weights, Course::alone());
         (self.effective, self.log_pieces) = (weighed.effective, weighed.log_sum);
     }
 

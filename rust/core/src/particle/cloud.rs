@@ -6,6 +6,7 @@ use super::birth::{Births, PLACE};
 use super::columns::Columns;
 use crate::error::Result;
 use crate::posterior::memory::{filled, space};
+use crate::posterior::parallel::Course;
 use crate::posterior::resampling::{normalise, systematic};
 use crate::posterior::{Clusters, Evidence};
 
@@ -53,8 +54,8 @@ impl Cloud {
 
     /// Sets the weights from their logarithms; returns how many particles are effective, and the logarithm of the likelihood
     /// of what was weighed, given all that was weighed before.
-    pub fn normalise(&mut self) -> (f64, f64) {
-        let weighed = normalise(&mut self.particles.log_weight, &mut self.weights);
+    pub fn normalise(&mut self, course: Course<'_>) -> (f64, f64) {
+        let weighed = normalise(&mut self.particles.log_weight, &mut self.weights, course);
         (weighed.effective, self.evidence.take_in(&weighed))
     }
 
@@ -64,12 +65,32 @@ impl Cloud {
         self.weights.fill(1.0 / self.particles.len() as f64);
     }
 
-    /// Replaces the particles by so many copies, drawn by their weights with an offset in [0, 1); what is behind them is of
-    /// no use.
-    pub fn copy(&mut self, kept: usize, offset: f64) {
-        systematic(&self.weights, offset, &mut self.parents[..kept]);
-        self.spare.gather(&self.particles, &self.parents[..kept]);
+    /// What draws copies while the particles are read.
+    pub fn copying(&mut self) -> (Copying<'_>, &Columns, &[f64]) {
+        let Self { particles, weights, parents, spare, .. } = self;
+        (Copying { particles, weights, parents, spare }, particles, weights)
+    }
+
+    /// Replaces the particles by so many copies that were drawn; what is behind them is of no use.
+    pub fn take_copies(&mut self, kept: usize) {
         std::mem::swap(&mut self.particles, &mut self.spare);
         self.particles.log_weight[..kept].fill(0.0);
+    }
+}
+
+/// Draws copies of particles by their weights.
+pub(super) struct Copying<'a> {
+    particles: &'a Columns,
+    weights: &'a [f64],
+    parents: &'a mut [u32],
+    spare: &'a mut Columns,
+}
+
+impl Copying<'_> {
+    /// So many, with an offset in [0, 1).
+    pub fn draw(self, kept: usize, offset: f64) {
+        let parents = &mut self.parents[..kept];
+        systematic(self.weights, offset, parents);
+        self.spare.gather(self.particles, parents);
     }
 }

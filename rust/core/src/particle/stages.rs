@@ -63,7 +63,8 @@ impl Stages {
     /// Draws all particles anew by their weights, and moves copies apart.
     pub fn resampling(&mut self) {
         let noise = self.noise();
-        self.0.resample(&noise, self.0.instant.displacement(), 0.01);
+        let copies = self.0.cloud.particles.len() * 99 / 100;
+        self.0.resample(&noise, self.0.instant.displacement(), copies);
     }
 
     /// Finds the modes and says the estimate.

@@ -152,21 +152,44 @@ impl FilterState {
             self.clock.next_reinitialisation = self.clock.age + PAUSE;
             (effective, event) = self.reinitialise(&noise, moved, event);
         }
-        let left = self.estimate_contact(event, effective, moved);
-        if effective < RESAMPLE * self.cloud.particles.len() as f64 {
-            self.resample(&noise, moved, Adaptation::fresh_share(left.share));
+        let left = self.left_over();
+        let few = effective < RESAMPLE * self.cloud.particles.len() as f64;
+        let kept = few.then(|| self.copies(Adaptation::fresh_share(left.share)));
+        self.find_modes(kept);
+        self.say(event, effective, moved, &left);
+        if let Some(kept) = kept {
+            self.take_copies(kept, &noise, moved);
         }
     }
 
     /// Says what the weighted particles show.
-    pub fn estimate_contact(&mut self, event: Event, effective: f64, moved: f64) -> LeftOver {
-        self.clusters.find(&self.robot, &self.instant.frames, &self.cloud.particles, &self.cloud.weights);
+    pub fn estimate_contact(&mut self, event: Event, effective: f64, moved: f64) {
         let left = self.left_over();
+        self.find_modes(None);
+        self.say(event, effective, moved, &left);
+    }
+
+    /// Finds the modes of the weighted particles, and draws so many copies of these at the same time.
+    fn find_modes(&mut self, kept: Option<usize>) {
+        let wanted = kept.map(|kept| (kept, self.offset()));
+        let Self { robot, instant, clusters, cloud, options, stop, .. } = self;
+        let (copying, particles, weights) = cloud.copying();
+        Course { threads: options.threads, stop }.both(
+            || clusters.find(robot, &instant.frames, particles, weights),
+            || {
+                if let Some((kept, offset)) = wanted {
+                    copying.draw(kept, offset);
+                }
+            },
+        );
+    }
+
+    /// Says what was found, where the best particle leaves so much over.
+    fn say(&mut self, event: Event, effective: f64, moved: f64, left: &LeftOver) {
         self.adaptation.learn(left.misfit, self.active_joints());
-        self.update_estimate(event, effective, moved, &left);
+        self.update_estimate(event, effective, moved, left);
         self.known = self.known(left.best);
         self.explains = (self.instant.squared - left.misfit) / self.adaptation.noise();
-        left
     }
 
     fn response_model(&self) -> ResponseModel {
@@ -241,7 +264,7 @@ impl FilterState {
         let work = |_: usize, mut slice: Slice<'_>| weighing.apply(&mut slice);
         let course = Course { threads: self.options.threads, stop: &self.stop };
         course.for_each(self.cloud.particles.slice(), 0, &work);
-        let (effective, evidence) = self.cloud.normalise();
+        let (effective, evidence) = self.cloud.normalise(course);
         // Without a contact all of the torque is noise.
         self.found.log_evidence = evidence + 0.5 * self.instant.squared / weighing.variance;
         effective
@@ -251,9 +274,16 @@ impl FilterState {
     fn probe(&self, weighing: &Weighing) -> f64 {
         let particles = &self.cloud.particles;
         let stride = particles.len().div_ceil(PROBES);
-        effective_share(particles.len(), stride, |k| {
-            particles.log_weight[k] + weighing.log_likelihood(&Belief::of(particles, k))
-        })
+        let mut logs = [0.0; PROBES];
+        let logs = &mut logs[..particles.len().div_ceil(stride)];
+        let work = |start: usize, logs: &mut [f64]| {
+            for (k, log) in (start..).zip(logs) {
+                let k = k * stride;
+                *log = particles.log_weight[k] + weighing.log_likelihood(&Belief::of(particles, k));
+            }
+        };
+        Course { threads: self.options.threads, stop: &self.stop }.for_each(&mut *logs, 0, &work);
+        effective_share(logs.iter().copied())
     }
 
     /// How many joints feel the contact.

@@ -34,6 +34,7 @@ impl Evidence {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::posterior::parallel::Course;
     use crate::posterior::resampling::normalise;
 
     #[test]
@@ -44,13 +45,13 @@ mod tests {
         let mut logs: Vec<f64> = (0..count).map(|k| -0.5 * at(k).powi(2)).collect();
         let mut weights = vec![0.0; count];
         let mut evidence = Evidence::of(count);
-        evidence.take_in(&normalise(&mut logs, &mut weights));
+        evidence.take_in(&normalise(&mut logs, &mut weights, Course::alone()));
         let (mut mean, mut variance) = (0.0, 1.0_f64);
         for measured in [1.3, -0.4] {
             for (k, log) in logs.iter_mut().enumerate() {
                 *log -= 0.5 * ((measured - at(k)) / s).powi(2);
             }
-            let found = evidence.take_in(&normalise(&mut logs, &mut weights));
+            let found = evidence.take_in(&normalise(&mut logs, &mut weights, Course::alone()));
             let spread = variance + s * s;
             let exact = (s / spread.sqrt()).ln() - 0.5 * (measured - mean).powi(2) / spread;
             assert!((found - exact).abs() < 1e-6, "{found} {exact}");

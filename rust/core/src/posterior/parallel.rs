@@ -30,6 +30,18 @@ impl<T: Send> Pieces for &mut [T] {
     }
 }
 
+/// As many of each, the same ones together.
+impl<A: Pieces, B: Pieces> Pieces for (A, B) {
+    fn count(&self) -> usize {
+        self.0.count()
+    }
+
+    fn split(self, middle: usize) -> (Self, Self) {
+        let (first, second) = (self.0.split(middle), self.1.split(middle));
+        ((first.0, second.0), (first.1, second.1))
+    }
+}
+
 /// How samples are worked on.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Course<'a> {
@@ -39,7 +51,20 @@ pub(crate) struct Course<'a> {
     pub stop: &'a AtomicBool,
 }
 
+/// Is never set.
+static NEVER: AtomicBool = AtomicBool::new(false);
+
 impl Course<'_> {
+    /// One thread, which is not stopped.
+    pub fn alone() -> Course<'static> {
+        Course { threads: 1, stop: &NEVER }
+    }
+
+    /// The same, but not to be stopped.
+    pub fn to_the_end(self) -> Course<'static> {
+        Course { stop: &NEVER, ..self }
+    }
+
     /// Calls `work` on pieces of the samples with the number of their first one.
     pub fn for_each<P: Pieces>(self, samples: P, start: usize, work: &(impl Fn(usize, P) + Sync)) {
         let count = samples.count();
@@ -52,8 +77,11 @@ impl Course<'_> {
         }
         let middle = count / 2;
         let (left, right) = samples.split(middle);
-        let first = || self.for_each(left, start, work);
-        let second = || self.for_each(right, start + middle, work);
+        self.both(|| self.for_each(left, start, work), || self.for_each(right, start + middle, work));
+    }
+
+    /// Does both, at once if there are several threads.
+    pub fn both(self, first: impl FnOnce() + Send, second: impl FnOnce() + Send) {
         if self.threads < 2 {
             first();
             second();
@@ -98,9 +126,53 @@ impl Pool {
     /// memory for its queue.
     pub fn install(&self, work: impl FnOnce() + Send) {
         match &self.pool {
-            Some(pool) => pool.install(work),
+            Some(pool) => pool.install(|| {
+                let awake = Awake { done: &AtomicBool::new(false), starter: rayon::current_thread_index() };
+                awake.keep(pool.current_num_threads() - 1, work);
+            }),
             None => work(),
         }
+    }
+}
+
+/// Keeps the other threads awake while there is work of which they may get parts: one that sleeps takes about as long to wake as a part
+/// takes.
+#[cfg(feature = "parallel")]
+#[derive(Clone, Copy)]
+struct Awake<'a> {
+    done: &'a AtomicBool,
+    starter: Option<usize>,
+}
+
+#[cfg(feature = "parallel")]
+impl Awake<'_> {
+    /// Does the work while so many other threads look for parts of it.
+    fn keep(self, others: usize, work: impl FnOnce() + Send) {
+        if others == 0 {
+            // Set also where the work panics.
+            let _set = Done(self.done);
+            return work();
+        }
+        rayon::join(|| self.keep(others - 1, work), || self.look_for_parts());
+    }
+
+    fn look_for_parts(self) {
+        // The thread that does the work must not wait for its end.
+        while rayon::current_thread_index() != self.starter && !self.done.load(Ordering::Acquire) {
+            if rayon::yield_now() != Some(rayon::Yield::Executed) {
+                std::thread::yield_now();
+            }
+        }
+    }
+}
+
+#[cfg(feature = "parallel")]
+struct Done<'a>(&'a AtomicBool);
+
+#[cfg(feature = "parallel")]
+impl Drop for Done<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Release);
     }
 }
 

@@ -1,34 +1,50 @@
 //! Systematic resampling (Kitagawa 1996): a comb over the cumulated weights.
 
+use std::ops::Add;
+
 use super::evidence::Weighed;
+use super::parallel::Course;
+
+/// Numbers that are added up side by side.
+const LANES: usize = 4;
 
 /// Weights from their logarithms, summing to one.
 ///
 /// A logarithm that is no number is a weight of zero. All alike where no particle has a weight.
-pub(crate) fn normalise(log_weights: &mut [f64], weights: &mut [f64]) -> Weighed {
-    let mut greatest = f64::NEG_INFINITY;
-    for log in log_weights.iter_mut() {
-        *log = weightless(*log);
-        greatest = greatest.max(*log);
-    }
-    let mut sum = 0.0;
-    for (weight, log) in weights.iter_mut().zip(log_weights.iter()) {
-        *weight = (log - greatest).exp();
-        sum += *weight;
-    }
+pub(crate) fn normalise(log_weights: &mut [f64], weights: &mut [f64], course: Course<'_>) -> Weighed {
+    log_weights.iter_mut().for_each(|log| *log = weightless(*log));
+    let greatest = fold(log_weights, |log| log, f64::NEG_INFINITY, f64::max);
+    let weigh = |_: usize, (logs, weights): (&mut [f64], &mut [f64])| {
+        for (log, weight) in logs.iter_mut().zip(weights) {
+            *log -= greatest;
+            *weight = log.exp();
+        }
+    };
+    course.to_the_end().for_each((&mut *log_weights, &mut *weights), 0, &weigh);
+    let sum = fold(weights, |weight| weight, 0.0, Add::add);
     if !(sum.is_finite() && sum > 0.0) {
         let count = weights.len() as f64;
         weights.fill(1.0 / count);
         log_weights.fill(0.0);
         return Weighed { effective: count, log_sum: f64::NEG_INFINITY, log_rest: count.ln() };
     }
-    let mut squares = 0.0;
-    for (weight, log) in weights.iter_mut().zip(log_weights.iter_mut()) {
-        *weight /= sum;
-        *log -= greatest;
-        squares += *weight * *weight;
-    }
+    weights.iter_mut().for_each(|weight| *weight /= sum);
+    let squares = fold(weights, |weight| weight * weight, 0.0, Add::add);
     Weighed { effective: 1.0 / squares, log_sum: greatest + sum.ln(), log_rest: sum.ln() }
+}
+
+/// Joins what values are mapped to, some side by side so that none waits for the one before.
+fn fold(values: &[f64], map: impl Fn(f64) -> f64, start: f64, join: impl Fn(f64, f64) -> f64) -> f64 {
+    let mut lanes = [start; LANES];
+    let pieces = values.chunks_exact(LANES);
+    let rest = pieces.remainder();
+    for piece in pieces {
+        for (lane, value) in lanes.iter_mut().zip(piece) {
+            *lane = join(*lane, map(*value));
+        }
+    }
+    let lanes = lanes.into_iter().fold(start, &join);
+    rest.iter().map(|value| map(*value)).fold(lanes, &join)
 }
 
 /// A log-weight that is not a number, or infinite, is that of a weight of zero.
@@ -41,19 +57,18 @@ fn weightless(log: f64) -> f64 {
     }
 }
 
-/// Effective sample size of every `stride`-th particle under `log_weight`, as a share.
-pub(crate) fn effective_share(count: usize, stride: usize, log_weight: impl Fn(usize) -> f64) -> f64 {
-    let log_weight = |k: usize| weightless(log_weight(k));
-    let greatest = (0..count).step_by(stride).map(log_weight).fold(f64::NEG_INFINITY, f64::max);
-    let (mut sum, mut squares, mut taken) = (0.0, 0.0, 0.0);
-    for k in (0..count).step_by(stride) {
-        let weight = (log_weight(k) - greatest).exp();
+/// Effective sample size of samples with these logarithms of weights, as a share.
+pub(crate) fn effective_share(log_weights: impl ExactSizeIterator<Item = f64> + Clone) -> f64 {
+    let logs = || log_weights.clone().map(weightless);
+    let greatest = logs().fold(f64::NEG_INFINITY, f64::max);
+    let (mut sum, mut squares) = (0.0, 0.0);
+    for log in logs() {
+        let weight = (log - greatest).exp();
         sum += weight;
         squares += weight * weight;
-        taken += 1.0;
     }
     if squares > 0.0 {
-        sum * sum / squares / taken
+        sum * sum / squares / log_weights.len() as f64
     } else {
         1.0
     }
@@ -107,10 +122,10 @@ mod tests {
     fn a_log_weight_that_is_no_number_is_a_weight_of_zero() {
         let mut weights = [0.0; 4];
         let mut logs = [f64::NAN, 0.0, f64::INFINITY, 3f64.ln()];
-        let effective = normalise(&mut logs, &mut weights).effective;
+        let effective = normalise(&mut logs, &mut weights, Course::alone()).effective;
         assert!((weights[3] - 0.75).abs() < 1e-12 && weights[0] == 0.0 && weights[2] == 0.0, "{weights:?}");
         assert!((effective - 1.6).abs() < 1e-12);
-        let share = effective_share(4, 1, |k| [f64::NAN, 0.0, f64::INFINITY, 3f64.ln()][k]);
+        let share = effective_share([f64::NAN, 0.0, f64::INFINITY, 3f64.ln()].into_iter());
         assert!((share - 0.4).abs() < 1e-12);
     }
 
@@ -118,11 +133,11 @@ mod tests {
     fn weights_are_normalised_whatever_their_size() {
         let mut logs = [-1e6, -1e6 + 2f64.ln(), f64::NEG_INFINITY];
         let mut weights = [0.0; 3];
-        let effective = normalise(&mut logs, &mut weights).effective;
+        let effective = normalise(&mut logs, &mut weights, Course::alone()).effective;
         assert!((weights[1] - 2.0 / 3.0).abs() < 1e-9 && weights[2] == 0.0);
         assert!((effective - 9.0 / 5.0).abs() < 1e-9);
         let mut none = [f64::NEG_INFINITY; 3];
-        assert_eq!(normalise(&mut none, &mut weights).effective, 3.0);
+        assert_eq!(normalise(&mut none, &mut weights, Course::alone()).effective, 3.0);
         assert_eq!(weights, [1.0 / 3.0; 3]);
     }
 }

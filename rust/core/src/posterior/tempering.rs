@@ -173,7 +173,7 @@ impl<S: Clone + Send + Sync> Samples<S> {
             for (log, logs) in self.log_weights.iter_mut().zip(&self.logs) {
                 *log += logs.at(next) - logs.at(share);
             }
-            let weighed = normalise(&mut self.log_weights, &mut self.weights);
+            let weighed = normalise(&mut self.log_weights, &mut self.weights, course);
             travelled.log_evidence += self.evidence.take_in(&weighed);
             travelled.effective = weighed.effective;
             share = next;
@@ -193,9 +193,8 @@ impl<S: Clone + Send + Sync> Samples<S> {
     /// How far the way can be gone at once.
     fn next_share(&self, share: f64, effective: f64) -> f64 {
         let leaves_enough = |next: f64| {
-            effective_share(self.all.len(), 1, |k| {
-                self.log_weights[k] + self.logs[k].at(next) - self.logs[k].at(share)
-            }) >= effective
+            let weighed = self.log_weights.iter().zip(&self.logs);
+            effective_share(weighed.map(|(log, logs)| log + logs.at(next) - logs.at(share))) >= effective
         };
         if leaves_enough(1.0) {
             return 1.0;

@@ -20,7 +20,8 @@ impl FilterState {
     /// was known. Returns how many particles are effective then, and what happened.
     pub(super) fn reinitialise(&mut self, noise: &StepNoise, moved: f64, event: Event) -> (f64, Event) {
         let count = self.cloud.particles.len();
-        let kept = self.resample(noise, moved, REINITIALISED);
+        let kept = self.copies(REINITIALISED);
+        self.resample(noise, moved, kept);
         self.instant.stand();
         self.adaptation.begin();
         self.predict(&StepNoise::none(), kept);
@@ -29,13 +30,27 @@ impl FilterState {
         (effective, if found > 0.5 { Event::Changed } else { event })
     }
 
-    /// Draws particles anew, a share of them from the whole surface: those behind the others, whose number is returned.
-    pub fn resample(&mut self, noise: &StepNoise, moved: f64, fresh_share: f64) -> usize {
+    /// How many are copies where particles are drawn anew, a share of them from the whole surface.
+    pub(super) fn copies(&self, fresh_share: f64) -> usize {
         let count = self.cloud.particles.len();
-        let anew = ((fresh_share * count as f64) as usize).min(count - 1);
-        let kept = count - anew;
-        let offset = self.clock.stream().uniform(0);
-        self.cloud.copy(kept, offset);
+        count - ((fresh_share * count as f64) as usize).min(count - 1)
+    }
+
+    /// Where systematic resampling begins.
+    pub(super) fn offset(&mut self) -> f64 {
+        self.clock.stream().uniform(0)
+    }
+
+    /// Draws particles anew: so many copies, and those behind them from the whole surface.
+    pub fn resample(&mut self, noise: &StepNoise, moved: f64, kept: usize) {
+        let offset = self.offset();
+        self.cloud.copying().0.draw(kept, offset);
+        self.take_copies(kept, noise, moved);
+    }
+
+    /// Puts copies that were drawn in the particles' place, moved apart, and draws the others from the whole surface.
+    pub(super) fn take_copies(&mut self, kept: usize, noise: &StepNoise, moved: f64) {
+        self.cloud.take_copies(kept);
         let apart = noise.point.unwrap_or_else(|| {
             // A contact that is held to be fixed is not: it moves about as much as the robot does.
             let slip = if self.options.motion == Motion::Curvature { 0.0 } else { SLIP * moved };
@@ -44,7 +59,6 @@ impl FilterState {
         self.rejuvenate(kept, apart, noise.point.is_some());
         self.renew(kept, false);
         self.cloud.level();
-        kept
     }
 
     /// Moves copies among the first ones (or all of these) apart along the surface [m].
