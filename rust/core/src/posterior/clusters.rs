@@ -32,7 +32,9 @@ struct Cell {
 /// Buffers for finding modes.
 #[derive(Debug, Clone)]
 pub(crate) struct Clusters {
+    /// A table of the cells by their keys, of which so many slots are in use, a power of two: a short one stays near the processor.
     slots: Vec<u32>,
+    used: usize,
     /// One a cell. What is searched through stands by itself: cells are large.
     keys: Vec<u64>,
     /// Another cell of the cluster, in the end its root; itself at the root.
@@ -57,7 +59,8 @@ impl Clusters {
     /// [`Error::Memory`](crate::Error::Memory) where there is no space for so many samples.
     pub fn new(samples: usize, links: usize) -> Result<Self> {
         Ok(Clusters {
-            slots: filled(EMPTY, (2 * samples).next_power_of_two())?,
+            slots: filled(EMPTY, slots_for(samples))?,
+            used: 0,
             keys: space(samples)?,
             parents: space(samples)?,
             cells: space(samples)?,
@@ -87,7 +90,8 @@ impl Clusters {
 
     /// Finds the modes of weighted samples (the weights sum to one), best first.
     pub fn find(&mut self, robot: &Robot, frames: &Frames, samples: &impl ContactSamples, weights: &[f64]) {
-        self.slots.fill(EMPTY);
+        self.used = slots_for(weights.len());
+        self.slots[..self.used].fill(EMPTY);
         self.keys.clear();
         self.parents.clear();
         self.cells.clear();
@@ -120,7 +124,7 @@ impl Clusters {
 
     /// Index of the cell with a key, made where there is none.
     fn cell(&mut self, key: u64) -> usize {
-        let mask = self.slots.len() - 1;
+        let mask = self.used - 1;
         let mut slot = hash(key) & mask;
         loop {
             match self.slots[slot] {
@@ -139,7 +143,7 @@ impl Clusters {
     }
 
     fn known(&self, key: u64) -> Option<usize> {
-        let mask = self.slots.len() - 1;
+        let mask = self.used - 1;
         let mut slot = hash(key) & mask;
         loop {
             match self.slots[slot] {
@@ -265,6 +269,11 @@ impl Clusters {
         }
         at
     }
+}
+
+/// Slots for as many cells at most, so that half of them are empty.
+fn slots_for(cells: usize) -> usize {
+    (2 * cells).next_power_of_two()
 }
 
 fn cell_of(point: &Vector3<f64>) -> [u64; 3] {
