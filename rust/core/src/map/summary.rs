@@ -83,7 +83,8 @@ impl Summary {
             self.distances.clear();
             for (leaf, weight) in posterior.leaves.iter().zip(&posterior.weights) {
                 let place = frames.links[leaf.link].pose.transform_point(&leaf.place.point);
-                self.distances.push(((place - point).norm().hypot(RADIUS * leaf.spread), *weight));
+                let apart = (place - point).norm_squared() + (RADIUS * leaf.spread).powi(2);
+                self.distances.push((apart.sqrt(), *weight));
             }
             let [region, nearly_all] = held_within(&mut self.distances, [REGION, NEARLY_ALL]);
             let spread = found.estimate.covariance.map_or(0.0, |covariance| covariance.trace().sqrt());
@@ -96,21 +97,51 @@ impl Summary {
 
 /// The distances within which these shares of the weight are, in ascending order, of distances with weights (m).
 fn held_within(distances: &mut [(f64, f64)], shares: [f64; 2]) -> [f64; 2] {
-    distances.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let mut held = 0.0;
-    let mut known = distances.iter().map(|(distance, weight)| {
-        held += weight;
-        (*distance, held)
-    });
-    let farthest = distances.last().map_or(0.0, |last| last.0);
-    let mut last = (0.0, 0.0);
+    let (mut first, mut before) = (0, 0.0);
     shares.map(|share| {
-        while last.1 < share {
-            match known.next() {
-                Some(next) => last = next,
-                None => return farthest,
+        // The half where the share is reached is halved again.
+        let mut end = distances.len();
+        while end - first > 1 {
+            let middle = (end - first) / 2;
+            let (nearer, _, _) =
+                distances[first..end].select_nth_unstable_by(middle, |a, b| a.0.total_cmp(&b.0));
+            let held = before + nearer.iter().map(|(_, weight)| weight).sum::<f64>();
+            if held < share {
+                (first, before) = (first + middle, held);
+            } else {
+                end = first + middle;
             }
         }
-        last.0
+        distances.get(first).map_or(0.0, |found| found.0)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_held_within_the_same_distances_as_by_sorting() {
+        for count in [1, 2, 3, 10, 101] {
+            // In no order, some alike.
+            let mut distances: Vec<(f64, f64)> =
+                (0..count).map(|k| (f64::from(k * 37 % 23), 1.0 + f64::from(k % 5))).collect();
+            let total: f64 = distances.iter().map(|(_, weight)| weight).sum();
+            distances.iter_mut().for_each(|(_, weight)| *weight /= total);
+            let mut sorted = distances.clone();
+            sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+            for shares in [[0.5, 0.9], [0.9, 0.99], [0.0, 2.0]] {
+                let expected = shares.map(|share| {
+                    let mut held = 0.0;
+                    let reached = sorted.iter().find(|(_, weight)| {
+                        held += weight;
+                        held >= share
+                    });
+                    reached.or(sorted.last()).expect("one").0
+                });
+                assert_eq!(held_within(&mut distances, shares), expected, "{count} {shares:?}");
+            }
+        }
+        assert_eq!(held_within(&mut [], [0.5, 0.9]), [0.0, 0.0]);
+    }
 }

@@ -302,29 +302,29 @@ impl SurfacePosterior {
         let without = self.measurements.without_contact();
         for samples in &self.samples.links {
             let found = &self.found[samples.first..samples.first + samples.blocks.len()];
-            let count = samples.places.len();
             for side in 0..2 {
-                let logs = || found.iter().flat_map(|block| block.log[side]).take(count);
-                let forces = found.iter().flat_map(|block| block.force[side]);
-                let best = logs().fold(f64::NEG_INFINITY, f64::max);
+                // Lanes that are left over at the end hold the last place once more.
+                let best = found.iter().flat_map(|block| &block.log[side]).copied();
+                let best = best.fold(f64::NEG_INFINITY, f64::max);
                 if best < greatest - IMPOSSIBLE {
                     continue;
                 }
                 let floor = best.min(greatest + KEPT.ln());
-                let places = samples.places.iter().zip(&samples.areas);
-                for ((log, force), (&place, &area)) in logs().zip(forces).zip(places) {
-                    if log >= floor {
-                        let log_weight = log + without + area.ln();
-                        let (link, pulls) = (samples.link, side == 1);
-                        self.leaves.push(Leaf {
-                            link,
-                            place,
-                            area,
-                            pulls,
-                            log_weight,
-                            force,
-                            spread: Leaf::width(area),
-                        });
+                for (block, found) in found.iter().enumerate() {
+                    let own = block * LANES..samples.places.len().min((block + 1) * LANES);
+                    for (k, (&log, &force)) in own.zip(found.log[side].iter().zip(&found.force[side])) {
+                        if log >= floor {
+                            let area = samples.areas[k];
+                            self.leaves.push(Leaf {
+                                link: samples.link,
+                                place: samples.places[k],
+                                area,
+                                pulls: side == 1,
+                                log_weight: log + without + samples.log_areas[k],
+                                force,
+                                spread: Leaf::width(area),
+                            });
+                        }
                     }
                 }
             }

@@ -17,6 +17,8 @@ const LIGHT: f64 = 0.02;
 /// Modes that are reported at most.
 pub(crate) const MOST_MODES: usize = 8;
 const EMPTY: u32 = u32::MAX;
+/// Words of 64 bits for heavy cells: many times as many bits as there are cells mostly.
+const HEAVY_WORDS: usize = 1024;
 /// Steps uphill to where a mode is densest.
 const CLIMB: usize = 8;
 
@@ -35,6 +37,9 @@ pub(crate) struct Clusters {
     /// A table of the cells by their keys, of which so many slots are in use, a power of two: a short one stays near the processor.
     slots: Vec<u32>,
     used: usize,
+    /// By a part of their keys' hashes, whether there may be cells that are heavy enough for a cluster: most neighbours are none, which a
+    /// bit tells without a search.
+    heavy: Vec<u64>,
     /// One a cell. What is searched through stands by itself: cells are large.
     keys: Vec<u64>,
     /// Another cell of the cluster, in the end its root; itself at the root.
@@ -61,6 +66,7 @@ impl Clusters {
         Ok(Clusters {
             slots: filled(EMPTY, slots_for(samples))?,
             used: 0,
+            heavy: vec![0; HEAVY_WORDS],
             keys: space(samples)?,
             parents: space(samples)?,
             cells: space(samples)?,
@@ -154,6 +160,21 @@ impl Clusters {
         }
     }
 
+    /// Offsets to one half of the neighbours, of those that may be heavy.
+    fn heavy_neighbours(&self, key: u64) -> impl Iterator<Item = u64> {
+        let mut may_be = 0_u32;
+        for (k, offset) in NEIGHBOURS.iter().enumerate() {
+            // Without a branch: which ones are there is not to be guessed.
+            let (word, bit) = heavy_bit(mixed(key.wrapping_add(*offset)));
+            may_be |= ((self.heavy[word] >> bit & 1) as u32) << k;
+        }
+        std::iter::from_fn(move || {
+            let k = may_be.trailing_zeros();
+            may_be &= may_be.wrapping_sub(1);
+            NEIGHBOURS.get(k as usize).copied()
+        })
+    }
+
     /// The cluster's root; halves the path to it, so that a long chain of cells is not walked twice.
     fn root(&mut self, mut cell: u32) -> u32 {
         while self.parents[cell as usize] != cell {
@@ -168,13 +189,20 @@ impl Clusters {
     fn connect(&mut self) {
         let heaviest = self.cells.iter().map(|cell| cell.weight).fold(0.0, f64::max);
         let cutoff = LIGHT * heaviest;
+        self.heavy.fill(0);
+        for (cell, key) in self.cells.iter().zip(&self.keys) {
+            if cell.weight >= cutoff {
+                let (word, bit) = heavy_bit(mixed(*key));
+                self.heavy[word] |= 1 << bit;
+            }
+        }
         for index in 0..self.cells.len() {
             if self.cells[index].weight < cutoff {
                 continue;
             }
             let key = self.keys[index];
             // Half of the neighbours: the others find this one.
-            for offset in NEIGHBOURS {
+            for offset in self.heavy_neighbours(key) {
                 let Some(other) = self.known(key.wrapping_add(offset)) else { continue };
                 if self.cells[other].weight < cutoff {
                     continue;
@@ -290,7 +318,17 @@ fn link_of(key: u64) -> usize {
 }
 
 fn hash(key: u64) -> usize {
-    (key.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 24) as usize
+    (mixed(key) >> 24) as usize
+}
+
+fn mixed(key: u64) -> u64 {
+    key.wrapping_mul(0x9e37_79b9_7f4a_7c15)
+}
+
+/// Word of a mixed key in the bits of heavy cells, and bit in the word.
+fn heavy_bit(mixed: u64) -> (usize, u32) {
+    let at = mixed >> (64 - (HEAVY_WORDS * 64).ilog2());
+    ((at >> 6) as usize, (at & 63) as u32)
 }
 
 /// Offsets of keys to one half of the 26 neighbours.
