@@ -5,10 +5,12 @@ use crate::torque::SlowNoise;
 
 /// A shorter mean of a first bias holds too much noise (s).
 const FIRST_TIME: f64 = 0.3;
+/// The torque of a contact that has ended is still in the observers for so long (s): three time constants of the slowest.
+const SETTLING: f64 = 0.375;
 /// A bias does not go beyond so many standard deviations of what it can be: a held force cannot hide behind it.
 const LARGEST_BIAS: f64 = 4.0;
 /// Time over which the bias of a robot that is not followed becomes unknown again (s).
-const BIAS_TIME: f64 = 10.0;
+const BIAS_TIME: f64 = 60.0;
 /// A joint keeps no more of a contact's load than all joints together err by: what is larger may be a force that is held.
 const LARGEST_KEPT: f64 = 1.0;
 
@@ -25,12 +27,14 @@ pub(crate) struct SlowErrors {
     /// The bias stays this near to it.
     limit: Vec<f64>,
     bias: Vec<f64>,
-    /// Followed so far (s).
-    age: f64,
+    /// By joint, for how long it has been followed (s): the mean of as long a time is as certain as the bias is.
+    age: Vec<f64>,
     /// Not followed since (s); while it is followed again, that time wears off.
-    lost: f64,
+    lost: Vec<f64>,
+    /// Since the last step that told nothing (s); infinite once it is followed again.
+    settled: f64,
     /// Share of the start's uncertainty that is left.
-    unknown: f64,
+    unknown: Vec<f64>,
     /// Variance of what a contact may have left in each joint (Nm squared), and the most that it can be.
     kept: Vec<f64>,
     largest_kept: Vec<f64>,
@@ -50,9 +54,10 @@ impl SlowErrors {
             limit: spread.map(|(model, bias)| LARGEST_BIAS * (model + bias).sqrt()).collect(),
             zero: vec![0.0; noise.model.len()],
             bias: vec![0.0; noise.model.len()],
-            age: 0.0,
-            lost: 0.0,
-            unknown: 1.0,
+            age: vec![0.0; noise.model.len()],
+            lost: vec![0.0; noise.model.len()],
+            settled: f64::INFINITY,
+            unknown: vec![1.0; noise.model.len()],
             kept: vec![0.0; noise.model.len()],
             largest_kept: noise
                 .is_force
@@ -67,25 +72,55 @@ impl SlowErrors {
     /// A step of `dt` (s) without contact, with a torque `(nv,)`: a mean at first, then a low-pass.
     #[inline]
     pub fn follow(&mut self, torque: &[f64], dt: f64) {
-        self.age += dt;
-        let time_constant = self.age.clamp(FIRST_TIME, self.time_constant);
-        let share = (dt / time_constant).min(1.0);
-        let ranges = self.zero.iter().zip(&self.limit);
-        for ((bias, torque), (zero, limit)) in self.bias.iter_mut().zip(torque).zip(ranges) {
-            *bias = (*bias + share * (torque - *bias)).clamp(zero - limit, zero + limit);
+        if self.settled < f64::INFINITY {
+            self.settled += dt;
+            if self.settled < SETTLING {
+                return;
+            }
+            self.settled = f64::INFINITY;
+            self.doubt();
         }
-        let left = (1.0 - share).powi(2);
-        self.unknown *= left;
-        self.lost *= left;
-        self.kept.iter_mut().for_each(|kept| *kept *= left);
+        for (j, torque) in torque.iter().enumerate() {
+            self.age[j] = (self.age[j] + dt).min(self.time_constant);
+            let share = (dt / self.age[j].max(FIRST_TIME)).min(1.0);
+            let (zero, limit) = (self.zero[j], self.limit[j]);
+            self.bias[j] = (self.bias[j] + share * (torque - self.bias[j])).clamp(zero - limit, zero + limit);
+            let left = (1.0 - share).powi(2);
+            self.unknown[j] *= left;
+            self.lost[j] *= left;
+            self.kept[j] *= left;
+        }
+    }
+
+    /// After a contact a bias is less certain, and followed as one of as short a time: what gears have kept shows at once.
+    fn doubt(&mut self) {
+        for j in 0..self.age.len() {
+            let certain = self.noise.model[j] * (1.0 - self.followed[j]);
+            let doubtful = self.kept[j] + self.drift(j) + self.unknown[j] * self.noise.bias[j];
+            if doubtful > 0.0 {
+                self.age[j] = self.age[j].min(self.time_constant * certain / (certain + doubtful));
+            }
+        }
+    }
+
+    /// The variance by which joint `j`'s errors have drifted away from the bias since it was followed.
+    fn drift(&self, j: usize) -> f64 {
+        if self.lost[j] > 0.0 {
+            let known = (-self.lost[j] / self.noise.model_time[j]).exp();
+            2.0 * self.noise.model[j] * self.followed[j] * (1.0 - known)
+        } else {
+            0.0
+        }
     }
 
     /// A step of `dt` (s) that tells nothing of the errors, with a torque `(nv,)` of which joints may keep a share.
     #[inline]
     pub fn lose(&mut self, torque: &[f64], dt: f64) {
-        self.lost += dt;
+        self.settled = 0.0;
+        self.lost.iter_mut().for_each(|lost| *lost += dt);
         let forgotten = (dt / BIAS_TIME).min(1.0);
-        self.unknown = 1.0 - (1.0 - self.unknown) * (1.0 - forgotten).powi(2);
+        let left = (1.0 - forgotten).powi(2);
+        self.unknown.iter_mut().for_each(|unknown| *unknown = 1.0 - (1.0 - *unknown) * left);
         for (k, kept) in self.kept.iter_mut().enumerate() {
             let load = self.noise.relative[k] * (torque[k] - self.bias[k]);
             *kept = kept.max((load * load).min(self.largest_kept[k]));
@@ -96,12 +131,10 @@ impl SlowErrors {
     /// The variance of what is not known of joint `j`'s errors behind an observer that follows them by a share.
     #[inline]
     pub fn variance(&self, j: usize, share: f64) -> f64 {
-        let followed = self.followed[j];
-        let kept = if self.lost > 0.0 { (-self.lost / self.noise.model_time[j]).exp() } else { 1.0 };
         // Of an error m that its low-pass b follows: var(m) = 1, var(b) = cov(m, b) = followed, and the covariance
         // falls off with the time since.
-        share * self.noise.model[j] * (1.0 + followed * (1.0 - 2.0 * kept))
-            + self.unknown * self.noise.bias[j]
+        share * (self.noise.model[j] * (1.0 - self.followed[j]) + self.drift(j))
+            + self.unknown[j] * self.noise.bias[j]
             + self.kept[j]
     }
 
@@ -114,7 +147,7 @@ impl SlowErrors {
     /// Takes a torque that a contact left behind for the bias.
     pub fn set(&mut self, bias: &[f64]) {
         self.bias.copy_from_slice(bias);
-        self.lost = 0.0;
+        self.lost.fill(0.0);
     }
 
     /// Whether a torque may be the bias after a contact that may have left so much in each joint (Nm).
@@ -129,7 +162,10 @@ impl SlowErrors {
         self.zero.copy_from_slice(torque);
         self.bias.copy_from_slice(torque);
         self.kept.fill(0.0);
-        (self.age, self.lost, self.unknown) = (self.time_constant, 0.0, 0.0);
+        self.age.fill(self.time_constant);
+        self.lost.fill(0.0);
+        self.unknown.fill(0.0);
+        self.settled = f64::INFINITY;
     }
 
     /// The bias `(nv,)`.
@@ -142,7 +178,10 @@ impl SlowErrors {
         self.zero.fill(0.0);
         self.bias.fill(0.0);
         self.kept.fill(0.0);
-        (self.age, self.lost, self.unknown) = (0.0, 0.0, 1.0);
+        self.age.fill(0.0);
+        self.lost.fill(0.0);
+        self.unknown.fill(1.0);
+        self.settled = f64::INFINITY;
     }
 }
 
