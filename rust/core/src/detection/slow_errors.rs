@@ -7,6 +7,8 @@ use crate::torque::SlowNoise;
 const FIRST_TIME: f64 = 0.3;
 /// The torque of a contact that has ended is still in the observers for so long (s): three time constants of the slowest.
 const SETTLING: f64 = 0.375;
+/// What a contact has left behind is not learnt faster (s): a weak contact that follows would be taken for a part of it.
+const LEARNT_TIME: f64 = 0.7;
 /// A bias does not go beyond so many standard deviations of what it can be: a held force cannot hide behind it.
 const LARGEST_BIAS: f64 = 4.0;
 /// Time over which the bias of a robot that is not followed becomes unknown again (s).
@@ -98,7 +100,8 @@ impl SlowErrors {
             let certain = self.noise.model[j] * (1.0 - self.followed[j]);
             let doubtful = self.kept[j] + self.drift(j) + self.unknown[j] * self.noise.bias[j];
             if doubtful > 0.0 {
-                self.age[j] = self.age[j].min(self.time_constant * certain / (certain + doubtful));
+                let known = self.time_constant * certain / (certain + doubtful);
+                self.age[j] = self.age[j].min(known.max(LEARNT_TIME));
             }
         }
     }
@@ -220,9 +223,26 @@ mod tests {
         let torque = [0.15, -0.1];
         (0..2000).for_each(|_| errors.lose(&torque, DT));
         let after_a_contact = errors.variance(0, 1.0);
-        (0..60_000).for_each(|_| errors.lose(&torque, DT));
+        (0..360_000).for_each(|_| errors.lose(&torque, DT));
         assert!(after_a_contact < errors.variance(0, 1.0) && errors.bias()[0].abs() < 0.01);
         assert!((errors.variance(0, 1.0) - (0.04 + 0.01 * (1.0 + 10.0 / 13.0))).abs() < 2e-3);
+    }
+
+    #[test]
+    fn what_a_joint_has_kept_is_learnt_soon_and_nothing_of_others() {
+        let mut errors = errors();
+        follow(&mut errors, [0.0; 2], 20.0);
+        let before = errors.variance(0, 0.0);
+        // Joint 1 may keep 5 % of 6 Nm, and does.
+        (0..100).for_each(|_| errors.lose(&[0.0, 6.0], DT));
+        let kept = errors.variance(1, 0.0);
+        follow(&mut errors, [0.3; 2], 0.3);
+        // The contact's own torque is left in the observers.
+        assert!(errors.bias()[1] == 0.0 && errors.variance(1, 0.0) == kept && kept > 0.08);
+        follow(&mut errors, [0.3; 2], 1.0);
+        let [slow, fast] = [errors.bias()[0], errors.bias()[1]];
+        assert!(fast > 0.17 && slow < 0.11, "{slow} {fast}");
+        assert!(errors.variance(1, 0.0) < 0.25 * kept && errors.variance(0, 0.0) <= before + 1e-3);
     }
 
     #[test]
