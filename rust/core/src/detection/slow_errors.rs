@@ -5,7 +5,9 @@ use crate::torque::SlowNoise;
 
 /// A shorter mean of a first bias holds too much noise (s).
 const FIRST_TIME: f64 = 0.3;
-/// The torque of a contact that has ended is still in the observers for so long (s): three time constants of the slowest.
+/// The torque of a contact that has ended is still in the observers for so many times as long as it lasted, and at most for so long (s):
+/// three time constants of the slowest.
+const TAIL: f64 = 3.0;
 const SETTLING: f64 = 0.375;
 /// What a contact has left behind is not learnt faster (s): a weak contact that follows would be taken for a part of it.
 const LEARNT_TIME: f64 = 0.7;
@@ -33,8 +35,8 @@ pub(crate) struct SlowErrors {
     age: Vec<f64>,
     /// Not followed since (s); while it is followed again, that time wears off.
     lost: Vec<f64>,
-    /// Since the last step that told nothing (s); infinite once it is followed again.
-    settled: f64,
+    /// The torque of a contact, or of what looked like one, is in the observers for as long yet (s).
+    unsettled: f64,
     /// Share of the start's uncertainty that is left.
     unknown: Vec<f64>,
     /// Variance of what a contact may have left in each joint (Nm squared), and the most that it can be.
@@ -58,7 +60,7 @@ impl SlowErrors {
             bias: vec![0.0; noise.model.len()],
             age: vec![0.0; noise.model.len()],
             lost: vec![0.0; noise.model.len()],
-            settled: f64::INFINITY,
+            unsettled: 0.0,
             unknown: vec![1.0; noise.model.len()],
             kept: vec![0.0; noise.model.len()],
             largest_kept: noise
@@ -74,12 +76,11 @@ impl SlowErrors {
     /// A step of `dt` (s) without contact, with a torque `(nv,)`: a mean at first, then a low-pass.
     #[inline]
     pub fn follow(&mut self, torque: &[f64], dt: f64) {
-        if self.settled < f64::INFINITY {
-            self.settled += dt;
-            if self.settled < SETTLING {
+        if self.unsettled > 0.0 {
+            self.unsettled -= dt;
+            if self.unsettled > 0.0 {
                 return;
             }
-            self.settled = f64::INFINITY;
             self.doubt();
         }
         for (j, torque) in torque.iter().enumerate() {
@@ -119,7 +120,7 @@ impl SlowErrors {
     /// A step of `dt` (s) that tells nothing of the errors, with a torque `(nv,)` of which joints may keep a share.
     #[inline]
     pub fn lose(&mut self, torque: &[f64], dt: f64) {
-        self.settled = 0.0;
+        self.unsettled = (self.unsettled + TAIL * dt).min(SETTLING);
         self.lost.iter_mut().for_each(|lost| *lost += dt);
         let forgotten = (dt / BIAS_TIME).min(1.0);
         let left = (1.0 - forgotten).powi(2);
@@ -168,7 +169,7 @@ impl SlowErrors {
         self.age.fill(self.time_constant);
         self.lost.fill(0.0);
         self.unknown.fill(0.0);
-        self.settled = f64::INFINITY;
+        self.unsettled = 0.0;
     }
 
     /// The bias `(nv,)`.
@@ -184,7 +185,7 @@ impl SlowErrors {
         self.age.fill(0.0);
         self.lost.fill(0.0);
         self.unknown.fill(1.0);
-        self.settled = f64::INFINITY;
+        self.unsettled = 0.0;
     }
 }
 
@@ -236,7 +237,7 @@ mod tests {
         // Joint 1 may keep 5 % of 6 Nm, and does.
         (0..100).for_each(|_| errors.lose(&[0.0, 6.0], DT));
         let kept = errors.variance(1, 0.0);
-        follow(&mut errors, [0.3; 2], 0.3);
+        follow(&mut errors, [0.3; 2], 0.25);
         // The contact's own torque is left in the observers.
         assert!(errors.bias()[1] == 0.0 && errors.variance(1, 0.0) == kept && kept > 0.08);
         follow(&mut errors, [0.3; 2], 1.0);
