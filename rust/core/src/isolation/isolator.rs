@@ -114,7 +114,7 @@ impl ContactIsolator {
     /// An isolator for a robot.
     ///
     /// # Errors
-    /// [`Error::Input`] names the option.
+    /// [`Error::Input`](crate::Error::Input) names the option.
     pub fn new(robot: Arc<Robot>, options: &IsolatorOptions) -> Result<Self> {
         let (threshold, noise) = options.threshold_and_noise(&robot)?;
         options.check()?;
