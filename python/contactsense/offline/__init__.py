@@ -1,7 +1,7 @@
 """A log through a monitor, and files of what it found."""
 
-from .contact import ReplayedContact
 from .replay import replay
 from .result import Replay
+from .summary import ReplayedContact
 
 __all__ = ["Replay", "ReplayedContact", "replay"]

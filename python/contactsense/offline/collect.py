@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..log import Log
-from .contact import PROBABILITIES
 from .result import Replay
-from .summary import contacts_of
+from .summary import PROBABILITIES, contacts_of
 
 Column = NDArray[np.float64]
 

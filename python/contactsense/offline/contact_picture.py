@@ -15,7 +15,7 @@ from .._pictures import DETECTED, ESTIMATE, GREY, TEXT, save_picture
 from .._places import Places, draw_places, link_colours, link_legend
 from .._robot_view import FloatArray, body, eye, share_scale
 from ..log import Log
-from .contact import ReplayedContact
+from .summary import ReplayedContact
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

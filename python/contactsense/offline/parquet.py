@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._extras import require
-from .contact import PROBABILITIES
+from .summary import PROBABILITIES
 from .whole import whole_file
 
 _CONTACT: dict[str, Any] = {

@@ -14,7 +14,7 @@ from .. import _core
 from .._extras import require
 from ..errors import InputError
 from ..log import Log
-from .contact import ReplayedContact
+from .summary import ReplayedContact
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -1,19 +1,14 @@
 //! Systematic resampling (Kitagawa 1996): a comb over the cumulated weights.
 
-use std::ops::Add;
-
 use super::evidence::Weighed;
 use super::parallel::Course;
-
-/// Numbers that are added up side by side.
-const LANES: usize = 4;
 
 /// Weights from their logarithms, summing to one.
 ///
 /// A logarithm that is no number is a weight of zero. All alike where no particle has a weight.
 pub(crate) fn normalise(log_weights: &mut [f64], weights: &mut [f64], course: Course<'_>) -> Weighed {
     log_weights.iter_mut().for_each(|log| *log = weightless(*log));
-    let greatest = fold(log_weights, |log| log, f64::NEG_INFINITY, f64::max);
+    let greatest = log_weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let weigh = |_: usize, (logs, weights): (&mut [f64], &mut [f64])| {
         for (log, weight) in logs.iter_mut().zip(weights) {
             *log -= greatest;
@@ -21,30 +16,19 @@ pub(crate) fn normalise(log_weights: &mut [f64], weights: &mut [f64], course: Co
         }
     };
     course.to_the_end().for_each((&mut *log_weights, &mut *weights), 0, &weigh);
-    let sum = fold(weights, |weight| weight, 0.0, Add::add);
+    let sum: f64 = weights.iter().sum();
     if !(sum.is_finite() && sum > 0.0) {
         let count = weights.len() as f64;
         weights.fill(1.0 / count);
         log_weights.fill(0.0);
         return Weighed { effective: count, log_sum: f64::NEG_INFINITY, log_rest: count.ln() };
     }
-    weights.iter_mut().for_each(|weight| *weight /= sum);
-    let squares = fold(weights, |weight| weight * weight, 0.0, Add::add);
-    Weighed { effective: 1.0 / squares, log_sum: greatest + sum.ln(), log_rest: sum.ln() }
-}
-
-/// Joins what values are mapped to, some side by side so that none waits for the one before.
-fn fold(values: &[f64], map: impl Fn(f64) -> f64, start: f64, join: impl Fn(f64, f64) -> f64) -> f64 {
-    let mut lanes = [start; LANES];
-    let pieces = values.chunks_exact(LANES);
-    let rest = pieces.remainder();
-    for piece in pieces {
-        for (lane, value) in lanes.iter_mut().zip(piece) {
-            *lane = join(*lane, map(*value));
-        }
+    let mut squares = 0.0;
+    for weight in weights.iter_mut() {
+        *weight /= sum;
+        squares += *weight * *weight;
     }
-    let lanes = lanes.into_iter().fold(start, &join);
-    rest.iter().map(|value| map(*value)).fold(lanes, &join)
+    Weighed { effective: 1.0 / squares, log_sum: greatest + sum.ln(), log_rest: sum.ln() }
 }
 
 /// A log-weight that is not a number, or infinite, is that of a weight of zero.
