@@ -75,7 +75,7 @@ const SATURATED: f64 = 4.97;
 /// The hyperbolic tangent to 2e-4 (its continued fraction to the seventh order): friction is not known better, and no
 /// library call is needed every tick.
 #[inline]
-pub(crate) fn sliding(x: f64) -> f64 {
+fn sliding(x: f64) -> f64 {
     let x = x.clamp(-SATURATED, SATURATED);
     let y = x * x;
     x * (135_135.0 + y * (17_325.0 + y * (378.0 + y)))

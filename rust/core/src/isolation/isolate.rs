@@ -106,7 +106,7 @@ impl ContactIsolator {
 }
 
 /// One for each sensor, finite or none.
-pub(super) fn check_wrenches(tree: &SensorTree, wrenches: &[Option<Vector6<f64>>]) -> Result<()> {
+fn check_wrenches(tree: &SensorTree, wrenches: &[Option<Vector6<f64>>]) -> Result<()> {
     if wrenches.len() != tree.len() {
         return Err(Error::input(
             "wrenches",

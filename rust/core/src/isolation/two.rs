@@ -73,7 +73,7 @@ impl SeveralContacts {
     }
 
     /// Closes a rank deficit by what is known of contacts.
-    pub(super) fn close(&mut self, scene: Scene, pair: &PairEstimate, pairs: usize, limit: f64) {
+    fn close(&mut self, scene: Scene, pair: &PairEstimate, pairs: usize, limit: f64) {
         if pair.deficit <= 2 {
             let (closed, count) = close(pair);
             for open in &closed[..count] {
@@ -105,7 +105,7 @@ impl SeveralContacts {
         }
     }
 
-    pub(super) fn try_open(&mut self, scene: Scene, pair: &PairEstimate, open: &Open, limit: f64) -> bool {
+    fn try_open(&mut self, scene: Scene, pair: &PairEstimate, open: &Open, limit: f64) -> bool {
         let wrenches = pair.wrenches(open);
         let misfit = pair.misfit(&wrenches);
         if exceeds(misfit, limit) {
