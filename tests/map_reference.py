@@ -1,8 +1,8 @@
 """The posterior of one contact, computed with Pinocchio's Jacobians and by integration over the force.
 
-The prior that a map states: a point uniform by area over the exposed surface, a normal force whose logarithm
-is uniform, a force across the normal that is Gaussian with half the friction cone's radius as its standard
-deviation.
+The prior that a map states: every link equally likely, a point uniform by area over its exposed surface, a
+normal force whose logarithm is uniform, a force across the normal that is Gaussian with half the friction
+cone's radius as its standard deviation.
 """
 
 from __future__ import annotations
@@ -124,8 +124,8 @@ def patches(robot: cs.Robot, q: FloatArray, link: str, points: FloatArray, drawn
     return Patch(points, sample.normals[itself] @ pose[:3, :3].T, np.log(counts))
 
 
-def area_shares(robot: cs.Robot) -> dict[str, float]:
-    """Share of each link in the exposed surface: what is believed where the torques say nothing."""
+def prior_shares(robot: cs.Robot) -> dict[str, float]:
+    """Prior probability of each link: what is believed where the torques say nothing."""
     deaf = cs.ContactMap(robot, samples=2000, noise=cs.NoiseModel(torque=1e6))
     return deaf.evaluate(robot.neutral(), np.zeros(robot.nv)).link_probabilities
 

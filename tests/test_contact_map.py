@@ -53,12 +53,12 @@ def same(one: cs.MapEstimate, other: cs.MapEstimate) -> bool:
 def test_regions_and_link_probabilities_are_calibrated_on_contacts_from_the_prior(name: str) -> None:
     robot = robot_named(name)
     rng = np.random.default_rng(7)
-    areas = reference.area_shares(robot)
+    prior = reference.prior_shares(robot)
     noise = cs.NoiseModel(torque=0.1, model=0.1, relative=0.0)
     contact_map = cs.ContactMap(robot, noise=noise)
     held, sure, right = [], [], []
     for _ in range(400):
-        truth = reference.draw(robot, rng, areas)
+        truth = reference.draw(robot, rng, prior)
         deviation = reference.deviations(noise, truth.torque)
         found = contact_map.evaluate(truth.q, truth.torque + deviation * rng.standard_normal(robot.nv))
         held.append(np.linalg.norm(found.point - truth.point) <= found.region_radius)
@@ -71,6 +71,13 @@ def test_regions_and_link_probabilities_are_calibrated_on_contacts_from_the_prio
     assert abs(np.mean(sure) - np.mean(right)) < 0.09
     # Ten bins of 40 that were perfectly calibrated would show 0.05 or so.
     assert reference.calibration_error(np.array(sure), np.array(right)) < 0.09
+
+
+@pytest.mark.parametrize("name", ["iiwa14", "panda", "atlas"])
+def test_every_link_is_equally_likely_beforehand(name: str) -> None:
+    prior = reference.prior_shares(robot_named(name))
+    assert len(prior) > 5
+    np.testing.assert_allclose(list(prior.values()), 1.0 / len(prior), rtol=1e-6)
 
 
 @pytest.mark.parametrize("link", ["iiwa_link_3", "iiwa_link_5", "iiwa_link_7"])
@@ -100,15 +107,15 @@ def test_the_posterior_of_samples_is_that_of_an_integral_over_the_force(link: st
 @pytest.mark.parametrize("torque", [0.1, 0.02])
 def test_how_many_samples_there_are_hardly_matters(torque: float) -> None:
     rng = np.random.default_rng(11)
-    areas = reference.area_shares(arm())
+    prior = reference.prior_shares(arm())
     noise = cs.NoiseModel(torque=torque, model=0.0, relative=0.0)
     few, many = (cs.ContactMap(arm(), samples=samples, noise=noise) for samples in (500, 20_000))
     links, evidence = [], []
     for _ in range(40):
-        truth = reference.draw(arm(), rng, areas, forces=(5.0, 60.0))
+        truth = reference.draw(arm(), rng, prior, forces=(5.0, 60.0))
         measured = truth.torque + torque * rng.standard_normal(7)
         one, other = few.evaluate(truth.q, measured), many.evaluate(truth.q, measured)
-        links.append(max(abs(one.link_probabilities[k] - other.link_probabilities[k]) for k in areas))
+        links.append(max(abs(one.link_probabilities[k] - other.link_probabilities[k]) for k in prior))
         evidence.append(abs(one.log_evidence - other.log_evidence))
     assert np.median(links) < 0.05
     assert np.percentile(links, 90) < 0.15
@@ -220,8 +227,8 @@ def test_evidence_is_low_on_noise_and_high_on_contacts() -> None:
     quiet = [contact_map.evaluate(Q, at_rest * rng.standard_normal(7)).log_evidence for _ in range(200)]
     assert np.median(quiet) < 0.0
     assert np.percentile(quiet, 99) < 3.0
-    areas = {f"iiwa_link_{k}": 1.0 for k in (3, 4, 5, 6, 7)}
-    pushes = [reference.draw(arm(), rng, areas, forces=(20.0, 60.0), pull_probability=0.0) for _ in range(50)]
+    prior = {f"iiwa_link_{k}": 1.0 for k in (3, 4, 5, 6, 7)}
+    pushes = [reference.draw(arm(), rng, prior, forces=(20.0, 60.0), pull_probability=0.0) for _ in range(50)]
     loud = [contact_map.evaluate(push.q, push.torque).log_evidence for push in pushes]
     assert np.percentile(loud, 5) > 10.0
 

@@ -132,7 +132,7 @@ def test_the_posterior_is_as_wide_as_stated(name: str) -> None:
     """Contacts from the map's prior at one force: the error of the posterior's mean on the link."""
     robot = robot_named(name)
     noise, friction, force = cs.NoiseModel(torque=0.1, model=0.0, relative=0.02), 0.5, 20.0
-    shares = reference.area_shares(robot)
+    shares = reference.prior_shares(robot)
     links = [link for link in shares if robot.jacobian(robot.neutral(), link).any(axis=0).sum() >= 3]
     for number, link in enumerate(links):
         rng = np.random.default_rng(number)

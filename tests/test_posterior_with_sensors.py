@@ -43,11 +43,11 @@ class Sensed:
         )
 
     def draw(
-        self, rng: np.random.Generator, areas: dict[str, float]
+        self, rng: np.random.Generator, shares: dict[str, float]
     ) -> tuple[map_reference.Truth, np.ndarray, np.ndarray]:
         """A push that is not wanted, with torques and wrenches, both noisy."""
         truth = map_reference.draw(
-            self.robot, rng, areas, forces=(10.0, 60.0), pull_probability=0.0, friction=0.3
+            self.robot, rng, shares, forces=(10.0, 60.0), pull_probability=0.0, friction=0.3
         )
         data = self.robot.model.createData()
         pin.computeJointJacobians(self.robot.model, data, truth.q)
@@ -65,23 +65,23 @@ class Sensed:
                 wrenches[row] += stance
         return truth, tau, wrenches
 
-    def areas(self) -> dict[str, float]:
-        """Shares of the surface where contacts are not wanted."""
-        shares = map_reference.area_shares(self.robot)
+    def shares(self) -> dict[str, float]:
+        """Prior of the links where contacts are not wanted."""
+        shares = map_reference.prior_shares(self.robot)
         kept = {
-            link: area
-            for link, area in shares.items()
+            link: share
+            for link, share in shares.items()
             if not any(self.is_behind(link, sensor) for sensor in self.wanted)
         }
         return {link: area / sum(kept.values()) for link, area in kept.items()}
 
 
 def count(sensed: Sensed, pushes: int, seed: int, **options: object) -> dict[str, float]:
-    isolator, areas = sensed.isolator(**options), sensed.areas()
+    isolator, shares = sensed.isolator(**options), sensed.shares()
     rng = np.random.default_rng(seed)
     right = located = wrong = 0
     for _ in range(pushes):
-        truth, tau, wrenches = sensed.draw(rng, areas)
+        truth, tau, wrenches = sensed.draw(rng, shares)
         contacts = isolator.isolate(truth.q, tau, wrenches).contacts
         if not contacts:
             continue
@@ -108,10 +108,10 @@ def test_wrenches_and_torques_together_place_contacts(sensed: Sensed, right: flo
 
 
 def test_a_sensor_that_says_nothing_leaves_the_torques() -> None:
-    isolator, areas, rng = ARM.isolator(), ARM.areas(), np.random.default_rng(5)
+    isolator, shares, rng = ARM.isolator(), ARM.shares(), np.random.default_rng(5)
     without = cs.ContactIsolator(ARM.robot, torque_threshold=3 * TORQUE)
     for _ in range(20):
-        truth, tau, wrenches = ARM.draw(rng, areas)
+        truth, tau, wrenches = ARM.draw(rng, shares)
         silent = isolator.isolate(truth.q, tau, np.full_like(wrenches, np.nan)).contacts
         alone = without.isolate(truth.q, tau).contacts
         assert [c.link for c in silent] == [c.link for c in alone]
@@ -153,7 +153,7 @@ def standing(
 def test_a_monitor_follows_contacts_on_a_standing_humanoid() -> None:
     robot = cs.Robot.named("atlas")
     sensor = cs.ForceTorqueSensor("l_foot", "l_foot")
-    shares, rng = ATLAS.areas(), np.random.default_rng(8)
+    shares, rng = ATLAS.shares(), np.random.default_rng(8)
     followed = located = 0
     for _ in range(6):
         monitor = cs.ContactMonitor(

@@ -64,7 +64,7 @@ def heard(run: sim.ImperfectRun, *onsets: float, collision: tuple[float, float] 
 
 def judged(force: float, delay: float | None, signal: float = 10.0) -> JudgedContact:
     return JudgedContact(
-        "iiwa_link_6", force, 0.5, signal, {"calibrated": delay}, {"calibrated": delay is None}, {}
+        "iiwa_link_6", force, 0.5, signal, 1.0, {"calibrated": delay}, {"calibrated": delay is None}, {}
     )
 
 

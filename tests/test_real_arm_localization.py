@@ -150,9 +150,11 @@ def test_right_probabilities_err_by_chance_alone() -> None:
     assert calibration_error(reliability(overconfident)) == pytest.approx(0.2)
 
 
-def contact(link: str, estimate: JudgedEstimate | None, *, detected: bool = True) -> JudgedContact:
+def contact(
+    link: str, estimate: JudgedEstimate | None, *, detected: bool = True, weight: float = 1.0
+) -> JudgedContact:
     delay = 0.05 if detected else None
-    return JudgedContact(link, 20.0, 0.5, 10.0, {"it": delay}, {"it": False}, {"it": estimate})
+    return JudgedContact(link, 20.0, 0.5, 10.0, weight, {"it": delay}, {"it": False}, {"it": estimate})
 
 
 def estimate(link: str, steps: int, error: float, radius: float, p: float, **more: Any) -> JudgedEstimate:
@@ -164,7 +166,7 @@ def estimate(link: str, steps: int, error: float, radius: float, p: float, **mor
 
 def test_figures_are_shares_of_the_detected() -> None:
     contacts = [
-        contact("a", estimate("a", 0, 0.01, 0.03, 0.9)),
+        contact("a", estimate("a", 0, 0.01, 0.03, 0.9), weight=3.0),
         contact("a", estimate("b", 1, 0.08, 0.04, 0.6)),
         contact("a", estimate("c", 2, 0.10, 0.20, 0.6, contacts=2)),
         contact("b", estimate("b", 0, np.nan, np.nan, 0.8, located=False)),
@@ -173,6 +175,7 @@ def test_figures_are_shares_of_the_detected() -> None:
     ]
     figures = localization(contacts, "it")
     assert (figures.detected, figures.named, figures.exact, figures.within_one) == (5, 0.8, 0.4, 0.6)
+    assert (figures.exact_by_area, figures.within_one_by_area) == pytest.approx((4 / 7, 5 / 7))
     assert (figures.point, figures.error) == (0.6, pytest.approx(0.08))
     assert (figures.located, figures.located_wrong) == (0.4, 0.5)
     assert (figures.regions, figures.coverage) == (3, pytest.approx(2 / 3))

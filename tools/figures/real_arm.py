@@ -24,6 +24,7 @@ LOCALIZATION_HEADER = (
     "detected",
     "link exact",
     "within one link",
+    "both by area",
     "with a point",
     "error, median; 90 %",
     "located",
@@ -92,7 +93,9 @@ def _localization_row(arm: str, figures: Any) -> list[str]:
     return [
         arm,
         str(figures["detected"]),
-        *(_share(figures[key]) for key in ("exact", "within_one", "point")),
+        *(_share(figures[key]) for key in ("exact", "within_one")),
+        ", ".join(_share(figures[key]) for key in ("exact_by_area", "within_one_by_area")),
+        _share(figures["point"]),
         _lengths(figures["error"], figures["error_90"]),
         *(_share(figures[key]) for key in ("located", "located_wrong", "coverage")),
         _lengths(middle, most),

@@ -29,6 +29,9 @@ class JudgedContact:
     # Largest external torque of a joint at the largest force, in standard deviations of the noise of its
     # torque sensor: where it is small, no monitor can see the contact.
     signal: float
+    # How many times as often its link would be touched if points were uniform by area over the whole arm, and
+    # not on every link equally often.
+    weight_by_area: float
     delays: dict[str, float | None]  # by monitor, from the start of the force to an onset [s]; None: missed
     # By monitor, whether a contact was reported already when this one began, so that it could give no onset.
     reported_before: dict[str, bool]
@@ -55,13 +58,17 @@ def judge_contacts(run: ImperfectRun, heard: Mapping[str, Heard]) -> tuple[Judge
     Its place is judged by the last report with a contact before it ends, at most `REACTION` after the onset.
     """
     chain = Chain(run.truth.robot)
-    noise = run.truth.arm.per_joint("torque_noise", run.truth.robot.nv)
+    robot = run.truth.robot
+    noise = run.truth.arm.per_joint("torque_noise", robot.nv)
+    areas = {link: robot.surface(link).area for link in robot.link_names}
+    mean_area = float(np.mean(list(areas.values())))
     return tuple(
         JudgedContact(
             link=each.contact.link,
             force=float(np.linalg.norm(each.force)),
             duration=each.contact.duration,
             signal=float(np.max(np.abs(each.external_torque) / noise)),
+            weight_by_area=areas[each.contact.link] / mean_area,
             delays={name: _delay(run, told, each) for name, told in heard.items()},
             reported_before={
                 name: bool(told.collision[max(each.rows.start - 1, 0)]) for name, told in heard.items()

@@ -27,6 +27,8 @@ class Localization:
     named: float  # share with a contact in a report
     exact: float  # share whose link is right
     within_one: float  # share whose link is right or next to the right one
+    exact_by_area: float  # the same two if points were uniform by area over the arm
+    within_one_by_area: float
     point: float  # share with a point
     error: float  # median of the points [m]
     error_90: float  # 90 % of the points are at least so close [m]
@@ -54,11 +56,22 @@ def localization(contacts: Sequence[JudgedContact], monitor: str) -> Localizatio
     def share(count: int) -> float:
         return count / len(detected) if detected else np.nan
 
+    def by_area(most: int) -> float:
+        weights = sum(each.weight_by_area for each in detected)
+        right = [
+            each.weight_by_area
+            for each in detected
+            if (told := each.estimates[monitor]) and told.steps <= most
+        ]
+        return sum(right) / weights if detected else np.nan
+
     return Localization(
         detected=len(detected),
         named=share(len(found)),
         exact=share(sum(each.steps == 0 for each in found)),
         within_one=share(sum(each.steps <= 1 for each in found)),
+        exact_by_area=by_area(0),
+        within_one_by_area=by_area(1),
         point=share(len(errors)),
         error=median(errors),
         error_90=float(np.quantile(errors, 0.9)) if errors else np.nan,

@@ -21,7 +21,8 @@ NOTES = (
     "those without a contact in any report count as neither named, located nor right.",
     "within 1: the link or a neighbour along the arm. ECE: expected calibration error of the probability",
     f"of the named link, {BINS} bins; by chance: what right probabilities would show with as few contacts;",
-    "all links: of the probability of every link.",
+    "all links: of the probability of every link. by area: every contact counts by the area of its link,",
+    "as if points were uniform by area over the arm, and not on every link equally often.",
     f"error: of the points, median and 90 %. wrong: of the located, off by more than {100 * WRONG:g} cm.",
     "radius: of the region that shall hold 90 % of the posterior, median and 90 %. coverage: it holds the",
     "true point.",
@@ -56,7 +57,7 @@ def _table(
 
 
 _LINKS = (
-    *("\ndetected", "named\n%", "exact\n%", "within 1\n%"),
+    *("\ndetected", "named\n%", "exact\n%", "within 1\n%", "exact,\nby area", "within 1,\nby area"),
     *("\nECE", "by\nchance", "all\nlinks"),
 )
 
@@ -65,6 +66,7 @@ def _links(figures: Localization) -> list[str]:
     return [
         str(figures.detected),
         *(scaled(share, 100) for share in (figures.named, figures.exact, figures.within_one)),
+        *(scaled(share, 100) for share in (figures.exact_by_area, figures.within_one_by_area)),
         scaled(figures.calibration_error, 1, 3),
         scaled(figures.calibration_error_by_chance, 1, 3),
         scaled(figures.calibration_error_all_links, 1, 3),

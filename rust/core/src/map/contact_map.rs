@@ -128,7 +128,7 @@ impl ContactMap {
                 std::array::from_fn::<_, LANES, _>(|k| log_sum(block.log[0][k], block.log[1][k]))
             };
             let logs = found[link.first..].iter().flat_map(sides);
-            link.log_areas.iter().zip(logs).map(|(log_area, log)| log + log_area)
+            link.log_priors.iter().zip(logs).map(|(prior, log)| log + prior)
         })
     }
 }

@@ -181,7 +181,7 @@ impl SurfacePosterior {
 
     /// Logarithm of how many times as likely the torques are with a contact as without.
     pub fn log_evidence(&self) -> f64 {
-        self.log_pieces - self.samples.area.ln() - self.measurements.without_contact()
+        self.log_pieces - self.measurements.without_contact()
     }
 
     fn start(&mut self) {
@@ -263,7 +263,7 @@ impl SurfacePosterior {
                 *greatest = logs.iter().flatten().copied().fold(*greatest, f64::max);
             }
             if !measurements.older().is_empty() {
-                self.same_place.add(&found.log, &older, &samples.areas[block * LANES..]);
+                self.same_place.add(&found.log, &older, &samples.priors[block * LANES..]);
             }
             (self.found[own.start + block], self.older[own.start + block]) = (found, older);
             (block, work) = (block + 1, work + self.measurements.all().len());
@@ -278,7 +278,7 @@ impl SurfacePosterior {
         if self.measurements.older().is_empty() {
             return;
         }
-        if !self.same_place.is_likely(self.samples.area) {
+        if !self.same_place.is_likely() {
             self.is_elsewhere = true;
             return self.measurements.forget_older();
         }
@@ -320,7 +320,7 @@ impl SurfacePosterior {
                                 place: samples.places[k],
                                 area,
                                 pulls: side == 1,
-                                log_weight: log + without + samples.log_areas[k],
+                                log_weight: log + without + samples.log_priors[k],
                                 force,
                                 spread: Leaf::width(area),
                             });

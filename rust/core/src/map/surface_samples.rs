@@ -1,4 +1,6 @@
-//! Samples of the surface, evenly spread over each link, and enough of them on small links too.
+//! Samples of the surface, evenly spread over each link, and enough of them on small links too. Beforehand, a contact is as
+//! likely on each link as on any other, and on a link as likely on each square metre as on any other: people touch, and
+//! obstacles stop, fingers and flanges far more often than by their area.
 
 use crate::error::{Error, Result};
 use crate::robot::Robot;
@@ -17,8 +19,9 @@ pub(super) struct LinkSamples {
     pub places: Vec<SurfacePoint>,
     /// Area that each stands for (m^2).
     pub areas: Vec<f64>,
-    /// Logarithms of these.
-    pub log_areas: Vec<f64>,
+    /// Prior probability of each, and its logarithm.
+    pub priors: Vec<f64>,
+    pub log_priors: Vec<f64>,
     /// The same places, the last one repeated to fill a block.
     pub blocks: Vec<PlaceBlock>,
     /// Blocks of all links before it.
@@ -32,6 +35,8 @@ pub(super) struct SurfaceSamples {
     /// Of all links (m^2).
     pub area: f64,
     pub count: usize,
+    /// By link of the robot: logarithm of the prior probability of a square metre of it.
+    log_densities: Vec<f64>,
 }
 
 impl SurfaceSamples {
@@ -45,6 +50,11 @@ impl SurfaceSamples {
             .iter()
             .map(|&index| surface(index).map_or(0.0, |surface| surface.exposed_area()))
             .collect();
+        let mut log_densities = vec![f64::NEG_INFINITY; robot.links().len()];
+        let exposed = areas.iter().filter(|area| **area > 0.0).count() as f64;
+        for (&link, area) in wanted.iter().zip(&areas) {
+            log_densities[link] = -(exposed * area).ln();
+        }
         let roots: f64 = areas.iter().map(|area| area.sqrt()).sum();
         let mut links = Vec::with_capacity(wanted.len());
         for (&link, &area) in wanted.iter().zip(&areas) {
@@ -52,7 +62,10 @@ impl SurfaceSamples {
             let drawn = surface(link).map_or(vec![], |surface| surface.sample(own * DRAWN, SEED));
             if !drawn.is_empty() {
                 let first = links.last().map_or(0, |last: &LinkSamples| last.first + last.blocks.len());
-                links.push(LinkSamples { first, ..LinkSamples::spread(link, &drawn, own, area) });
+                links.push(LinkSamples {
+                    first,
+                    ..LinkSamples::spread(link, &drawn, own, area, log_densities[link])
+                });
             }
         }
         if links.is_empty() {
@@ -65,7 +78,14 @@ impl SurfaceSamples {
             area: areas.iter().sum(),
             count: links.iter().map(|link| link.places.len()).sum(),
             links,
+            log_densities,
         })
+    }
+
+    /// Logarithm of the prior probability of a piece of a link (an index into the robot's) of an area (m^2).
+    #[inline]
+    pub fn log_prior(&self, link: usize, area: f64) -> f64 {
+        area.ln() + self.log_densities[link]
     }
 
     /// Edge of the patch that a sample stands for, on average (m).
@@ -77,7 +97,7 @@ impl SurfaceSamples {
 impl LinkSamples {
     /// `count` of the points drawn, each the farthest from those before (Gonzalez 1985); each stands for the points that are
     /// nearest to it.
-    fn spread(link: usize, drawn: &[SurfacePoint], count: usize, area: f64) -> Self {
+    fn spread(link: usize, drawn: &[SurfacePoint], count: usize, area: f64, log_density: f64) -> Self {
         let mut nearest = vec![(f64::INFINITY, 0); drawn.len()];
         let mut places = Vec::with_capacity(count);
         let mut next = 0;
@@ -100,8 +120,9 @@ impl LinkSamples {
             .zip(areas.chunks(LANES))
             .map(|(places, areas)| block(places, areas))
             .collect();
-        let log_areas = areas.iter().map(|area| area.ln()).collect();
-        LinkSamples { link, places, areas, log_areas, blocks, first: 0 }
+        let log_priors: Vec<f64> = areas.iter().map(|area| area.ln() + log_density).collect();
+        let priors = log_priors.iter().map(|log| log.exp()).collect();
+        LinkSamples { link, places, areas, priors, log_priors, blocks, first: 0 }
     }
 }
 

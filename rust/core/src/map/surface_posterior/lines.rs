@@ -104,7 +104,7 @@ impl SurfacePosterior {
         let block = PlaceBlock::new(&[(place.point, place.normal, area); LANES]);
         let found = self.measurements.likelihood(&self.prior, link, &block);
         let (log, force) = (found.log[usize::from(pulls)][0], found.force[usize::from(pulls)][0]);
-        let log_weight = log + self.measurements.without_contact() + area.ln();
+        let log_weight = log + self.measurements.without_contact() + self.samples.log_prior(link, area);
         let piece = Leaf { link, place, area, pulls, log_weight, force, spread: Leaf::width(area) };
         match known {
             Some(known) if log_weight > self.leaves[known].log_weight => self.leaves[known] = piece,

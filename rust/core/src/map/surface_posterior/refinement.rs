@@ -78,7 +78,8 @@ impl SurfacePosterior {
             let parts = places.into_iter().zip(found.log[side]).zip(found.force[side]);
             for (k, ((place, log), force)) in parts.enumerate() {
                 let hidden = surface.hides(&place.point, place.triangle);
-                let log_weight = if hidden { f64::NEG_INFINITY } else { log + without + area.ln() };
+                let prior = self.samples.log_prior(leaf.link, area);
+                let log_weight = if hidden { f64::NEG_INFINITY } else { log + without + prior };
                 let part = Leaf { place, area, log_weight, force, spread: Leaf::width(area), ..leaf };
                 if k == 0 {
                     self.leaves[index as usize] = part;

@@ -44,21 +44,21 @@ impl SamePlace {
         SamePlace { newest: LogSum::NONE, older: LogSum::NONE, together: LogSum::NONE }
     }
 
-    /// Takes in a block of samples with their areas (m^2): what the newest measurement says of them, and the older ones.
-    pub fn add(&mut self, newest: &Logs, older: &Logs, areas: &[f64]) {
+    /// Takes in a block of samples with their prior probabilities: what the newest measurement says of them, and the older ones.
+    pub fn add(&mut self, newest: &Logs, older: &Logs, priors: &[f64]) {
         for (newest, older) in newest.iter().zip(older) {
-            for ((newest, older), &area) in newest.iter().zip(older).zip(&areas[..areas.len().min(LANES)]) {
-                self.newest.add(*newest, area);
-                self.older.add(*older, area);
-                self.together.add(newest + older, area);
+            for ((newest, older), &prior) in newest.iter().zip(older).zip(&priors[..priors.len().min(LANES)])
+            {
+                self.newest.add(*newest, prior);
+                self.older.add(*older, prior);
+                self.together.add(newest + older, prior);
             }
         }
     }
 
-    /// Whether one place is at least as likely as two; beforehand they are. A second place is anywhere on the surface, which has
-    /// an area (m^2).
-    pub fn is_likely(&self, area: f64) -> bool {
-        self.together.log() >= self.newest.log() + self.older.log() - area.ln()
+    /// Whether one place is at least as likely as two; beforehand they are. A second place is anywhere on the surface.
+    pub fn is_likely(&self) -> bool {
+        self.together.log() >= self.newest.log() + self.older.log()
     }
 }
 
@@ -76,9 +76,9 @@ mod tests {
             [std::array::from_fn(log), [-100.0; LANES]]
         };
         for start in (0..COUNT).step_by(LANES) {
-            same.add(&logs(start, newest), &logs(start, older), &vec![1e-4; COUNT - start]);
+            same.add(&logs(start, newest), &logs(start, older), &vec![1.0 / COUNT as f64; COUNT - start]);
         }
-        same.is_likely(COUNT as f64 * 1e-4)
+        same.is_likely()
     }
 
     #[test]
