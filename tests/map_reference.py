@@ -124,6 +124,12 @@ def patches(robot: cs.Robot, q: FloatArray, link: str, points: FloatArray, drawn
     return Patch(points, sample.normals[itself] @ pose[:3, :3].T, np.log(counts))
 
 
+def area_shares(robot: cs.Robot) -> dict[str, float]:
+    """Share of each link that can move in their surface."""
+    areas = {link: robot.surface(link).area for link in prior_shares(robot)}
+    return {link: area / sum(areas.values()) for link, area in areas.items()}
+
+
 def prior_shares(robot: cs.Robot) -> dict[str, float]:
     """Prior probability of each link: what is believed where the torques say nothing."""
     deaf = cs.ContactMap(robot, samples=2000, noise=cs.NoiseModel(torque=1e6))

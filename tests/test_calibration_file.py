@@ -42,6 +42,14 @@ def full(**changes: object) -> cs.Calibration:
     }
     content["sensor_offsets"] = [["wrist: left", [1.0, 2.0, -3.0, 0.1, 0.2, 1e-20]]]
     content["tails"] = [{"gain": 8.0, "level": 12.5, "scale": 2.25}]
+    content["model_errors"] = [
+        {
+            "bodies": random.normal(size=(nv, 4)).tolist(),
+            "bias": random.normal(size=nv).tolist(),
+            "viscous": [0.0] * nv,
+        }
+        for _ in range(2)
+    ]
     content["contacts"] = [[1.0, 2.5], [1700000000.125, 1700000001.0]]
     content["notes"] = ["joint 7: its mass\ncannot be told # apart", "Größe \U0001f600 'and' \"so\""]
     content["noise"]["torque"] = random.uniform(0, 1, nv).tolist()

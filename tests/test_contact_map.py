@@ -107,15 +107,15 @@ def test_the_posterior_of_samples_is_that_of_an_integral_over_the_force(link: st
 @pytest.mark.parametrize("torque", [0.1, 0.02])
 def test_how_many_samples_there_are_hardly_matters(torque: float) -> None:
     rng = np.random.default_rng(11)
-    prior = reference.prior_shares(arm())
+    areas = reference.area_shares(arm())
     noise = cs.NoiseModel(torque=torque, model=0.0, relative=0.0)
     few, many = (cs.ContactMap(arm(), samples=samples, noise=noise) for samples in (500, 20_000))
     links, evidence = [], []
     for _ in range(40):
-        truth = reference.draw(arm(), rng, prior, forces=(5.0, 60.0))
+        truth = reference.draw(arm(), rng, areas, forces=(5.0, 60.0))
         measured = truth.torque + torque * rng.standard_normal(7)
         one, other = few.evaluate(truth.q, measured), many.evaluate(truth.q, measured)
-        links.append(max(abs(one.link_probabilities[k] - other.link_probabilities[k]) for k in prior))
+        links.append(max(abs(one.link_probabilities[k] - other.link_probabilities[k]) for k in areas))
         evidence.append(abs(one.log_evidence - other.log_evidence))
     assert np.median(links) < 0.05
     assert np.percentile(links, 90) < 0.15
@@ -227,8 +227,8 @@ def test_evidence_is_low_on_noise_and_high_on_contacts() -> None:
     quiet = [contact_map.evaluate(Q, at_rest * rng.standard_normal(7)).log_evidence for _ in range(200)]
     assert np.median(quiet) < 0.0
     assert np.percentile(quiet, 99) < 3.0
-    prior = {f"iiwa_link_{k}": 1.0 for k in (3, 4, 5, 6, 7)}
-    pushes = [reference.draw(arm(), rng, prior, forces=(20.0, 60.0), pull_probability=0.0) for _ in range(50)]
+    links = {f"iiwa_link_{k}": 1.0 for k in (3, 4, 5, 6, 7)}
+    pushes = [reference.draw(arm(), rng, links, forces=(20.0, 60.0), pull_probability=0.0) for _ in range(50)]
     loud = [contact_map.evaluate(push.q, push.torque).log_evidence for push in pushes]
     assert np.percentile(loud, 5) > 10.0
 

@@ -34,7 +34,7 @@ def stated(q: np.ndarray, link: str, tau: np.ndarray) -> tuple[np.ndarray, np.nd
 
 def pushes(count: int, seed: int) -> list[tuple[map_reference.Truth, np.ndarray]]:
     rng = np.random.default_rng(seed)
-    links = map_reference.prior_shares(ROBOT)
+    links = map_reference.area_shares(ROBOT)
     prior = {"forces": (10.0, 60.0), "pull_probability": 0.0}
     drawn = [map_reference.draw(ROBOT, rng, links, **prior) for _ in range(count)]
     return [(truth, truth.torque + SIGMA * rng.standard_normal(7)) for truth in drawn]

@@ -145,7 +145,7 @@ def test_noisy_pushes_on_an_arm_are_located_by_the_posterior_and_rarely_wrong(na
     """Pushes of 10 to 60 N anywhere on the surface, 0.1 Nm on each joint, thresholds of 0.3 Nm."""
     robot = robot_named(name)
     rng = np.random.default_rng(6)
-    prior = map_reference.prior_shares(robot)
+    areas = map_reference.area_shares(robot)
     isolators = {
         samples: cs.ContactIsolator(robot, torque_threshold=0.3, samples=samples) for samples in (0, 1000)
     }
@@ -155,7 +155,7 @@ def test_noisy_pushes_on_an_arm_are_located_by_the_posterior_and_rarely_wrong(na
         dict.fromkeys(isolators, 0),
     )
     for _ in range(400):
-        truth = map_reference.draw(robot, rng, prior, forces=(10.0, 60.0), friction=0.3, pull_probability=0.0)
+        truth = map_reference.draw(robot, rng, areas, forces=(10.0, 60.0), friction=0.3, pull_probability=0.0)
         measured = truth.torque + 0.1 * rng.standard_normal(robot.nv)
         for samples, isolator in isolators.items():
             contacts = isolator.isolate(truth.q, measured).contacts

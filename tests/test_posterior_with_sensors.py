@@ -66,8 +66,8 @@ class Sensed:
         return truth, tau, wrenches
 
     def shares(self) -> dict[str, float]:
-        """Prior of the links where contacts are not wanted."""
-        shares = map_reference.prior_shares(self.robot)
+        """Shares of the surface where contacts are not wanted."""
+        shares = map_reference.area_shares(self.robot)
         kept = {
             link: share
             for link, share in shares.items()

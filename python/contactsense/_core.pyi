@@ -929,6 +929,15 @@ class Calibration:
         more it is at a rate that is a factor of e lower.
         """
     @property
+    def model_errors(self) -> NDArray[np.float64]:
+        """Errors of the model that the motion of the log leaves possible and did not show, `(k, joints, 6)`; a read-only copy.
+
+        The k errors are independent of each other, each one standard deviation. By joint: mass [kg] and first moment [kg m] of
+        all that moves with the joint, about the joint's origin in its axes; bias of the torque [Nm, N]; and viscous friction
+        [Nm s/rad, N s/m]. Where the log visited most poses and speeds, there are few or none. A monitor expects less accurate
+        torques at poses and speeds where these errors matter.
+        """
+    @property
     def false_alarms_per_hour(self) -> float:
         """The rate of false alarms that thresholds are set for [1/h]."""
     @property
@@ -2645,8 +2654,8 @@ class Reaction:
 class ContactMap:
     """Says where on a robot a contact is, and how certain that is: the posterior over samples of all surface.
 
-    Every sample of the surface is a contact of unknown force: along the inward normal with a logarithm that is uniform from 2
-    to 300 N, across it by friction. Where the posterior is narrower than the samples are apart, they are divided on the true
+    Beforehand, every link is equally likely, and on a link every place of the same area. Every sample of the surface is a
+    contact of unknown force: along the inward normal with a logarithm that is uniform from 2 to 300 N, across it by friction. Where the posterior is narrower than the samples are apart, they are divided on the true
     surface. One contact; one thread at a time may use it.
 
     Args:

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use contactsense::calibration::{calibrate, Calibration, CalibrationOptions, Log};
 use contactsense::NoiseModel;
-use numpy::{PyArray1, PyArray2};
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -78,6 +78,7 @@ const ATTRIBUTES: &[&str] = &[
     "noise",
     "residual",
     "tails",
+    "model_errors",
     "false_alarms_per_hour",
     "contacts",
     "notes",
@@ -264,6 +265,27 @@ impl PyCalibration {
     fn tails<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let rows = self.0.tails.iter().map(|tail| [tail.gain, tail.level, tail.scale]);
         Ok(read_only(from_rows(py, rows)?))
+    }
+
+    /// Errors of the model that the motion of the log leaves possible and did not show, `(k, joints, 6)`; a read-only copy.
+    ///
+    /// The k errors are independent of each other, each one standard deviation. By joint: mass [kg] and first moment [kg m] of
+    /// all that moves with the joint, about the joint's origin in its axes; bias of the torque [Nm, N]; and viscous friction
+    /// [Nm s/rad, N s/m]. Where the log visited most poses and speeds, there are few or none. A monitor expects less accurate
+    /// torques at poses and speeds where these errors matter.
+    #[getter]
+    fn model_errors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let errors = &self.0.model_errors;
+        let shape = [errors.len(), self.0.joints.len(), 6];
+        let of_joint = |((body, bias), viscous): ((&[f64; 4], &f64), &f64)| {
+            let [mass, x, y, z] = *body;
+            [mass, x, y, z, *bias, *viscous]
+        };
+        let all = errors
+            .iter()
+            .flat_map(|error| error.bodies.iter().zip(&error.bias).zip(&error.viscous).map(of_joint));
+        let flat: Vec<f64> = all.flatten().collect();
+        Ok(read_only(PyArray1::from_vec(py, flat).reshape(shape)?))
     }
 
     /// The rate of false alarms that thresholds are set for [1/h].

@@ -63,7 +63,7 @@ def judge(robot: Robot, log: TouchLog, told: Replay, settings: Settings, tuning:
         delay = float(onsets[own][0]) - start if own.any() else None
         rows = slice(first, last + 1)
         if settings.source == "calibrated":
-            link, point = last_contact(robot, told, rows)
+            link, point = last_contact(robot, told, start, end)
         else:
             link, point = name_link(robot, isolator, log.measured.q[rows], ticks["external_torque"][rows])
         results.append(TouchResult(start, end, delay, link, point is not None, point))
@@ -92,17 +92,15 @@ def name_link(
     return link_number(robot, contact.link), contact.point_local if contact.located else None
 
 
-def last_contact(robot: Robot, told: Replay, rows: slice) -> tuple[int | None, FloatArray | None]:
-    """Link and, where located, point in its frame, of the last contact that is reported in some rows."""
-    contacts = told.contact_ticks
-    before = int(np.searchsorted(contacts["row"], rows.stop))
-    if before == 0 or contacts["row"][before - 1] < rows.start:
+def last_contact(
+    robot: Robot, told: Replay, start: float, end: float
+) -> tuple[int | None, FloatArray | None]:
+    """Link and, where located, point in its frame, of the last contact that goes on between two times [s]."""
+    during = [contact for contact in told.contacts if contact.start <= end and contact.end >= start]
+    if not during:
         return None, None
-    # The first of that row.
-    last = int(np.searchsorted(contacts["row"], contacts["row"][before - 1]))
-    return link_number(robot, contacts["link"][last]), contacts["point_local"][last] if contacts["located"][
-        last
-    ] else None
+    contact = during[-1]
+    return link_number(robot, contact.link), contact.point_local if contact.located else None
 
 
 def link_number(robot: Robot, link: str) -> int:

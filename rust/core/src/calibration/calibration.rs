@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::fingerprint::fingerprint;
 use super::friction::{Friction, REVERSALS};
-use super::Tail;
+use super::{ModelError, Tail};
 use crate::error::{Error, Result};
 use crate::robot::check::principal_moments;
 use crate::robot::inertial_parameters::{moment_matrix, of_inertia, to_inertia, Parameters};
@@ -78,6 +78,10 @@ pub struct Calibration {
     pub residual: Vec<f64>,
     /// How large the errors made the statistic of detection on those blocks, by gain of the observer.
     pub tails: Vec<Tail>,
+    /// Errors of the model that the motion of the log leaves possible and did not show: what poses and speeds may show that it
+    /// never had.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub model_errors: Vec<ModelError>,
     /// The rate of false alarms that thresholds are set for (1/h).
     pub false_alarms_per_hour: f64,
     /// From when to when contacts were found in the log and left out (s).
@@ -228,6 +232,7 @@ impl Calibration {
             noise: NoiseModel::default(),
             residual: zeros,
             tails: vec![],
+            model_errors: vec![],
             false_alarms_per_hour: 1.0,
             contacts: vec![],
             notes: vec![],
@@ -307,6 +312,16 @@ impl Calibration {
                 let text = "tails: gain must be positive, level and scale not negative, all finite";
                 return Err(Error::input("calibration", text));
             }
+        }
+        let fits = |error: &ModelError| {
+            let lengths = [error.bodies.len() + 1, error.bias.len(), error.viscous.len()];
+            let numbers = error.bodies.iter().flatten().chain(&error.bias).chain(&error.viscous);
+            lengths == [robot.body_count(), robot.nv(), robot.nv()]
+                && numbers.into_iter().all(|x| x.abs() < LARGEST)
+        };
+        if !self.model_errors.iter().all(fits) {
+            let text = "model_errors: each must have finite numbers, one set a joint";
+            return Err(Error::input("calibration", text));
         }
         if !(self.false_alarms_per_hour > 0.0 && self.false_alarms_per_hour.is_finite()) {
             return Err(Error::input("calibration", "false_alarms_per_hour: must be positive"));

@@ -1,6 +1,6 @@
 //! A complete fit of a log: shapes of friction and delays by trial, rows without contacts, and the solution.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use super::contacts::without_contact;
 use super::folds::{fit, hold_out, HeldOut, CHANGES, USUAL_CHANGE};
@@ -11,7 +11,7 @@ use super::normal::{own_terms, Joints, Shape};
 use super::rows::{torque_deviations, Filter, Row};
 use super::shapes::{Choice, CLEAR_OF_NOISE};
 use super::solve::Solution;
-use super::uncertainty::{self, weight};
+use super::uncertainty::{self, weight, Uncertainty};
 use super::unknowns::{Unknowns, ARMATURE, BIAS, COULOMB, TERMS};
 use super::CalibrationOptions;
 use crate::error::{Error, Result};
@@ -45,7 +45,7 @@ pub(super) struct Fit {
     pub used: Vec<bool>,
     pub held_out: HeldOut,
     pub solution: Solution,
-    pub covariance: DMatrix<f64>,
+    pub uncertainty: Uncertainty,
     pub velocity_delay: f64,
     /// Standard deviation of each torque (Nm; N).
     pub deviations: Vec<f64>,
@@ -107,10 +107,25 @@ impl Fit {
             held_out = hold_out(&unknowns, &joints, &rows, &used, changes).ok_or_else(failed)?;
         }
         let solution = fit(&unknowns, &joints, &rows, &used, held_out.change).ok_or_else(failed)?;
-        let covariance = uncertainty::covariance(&unknowns, &joints, &rows, &used, &held_out, &solution)
-            .ok_or_else(failed)?;
-        Ok(Fit { unknowns, joints, rows, used, held_out, solution, covariance, velocity_delay, deviations })
+        let uncertainty = uncertainty::covariance(
+            &unknowns,
+            &joints,
+            &rows,
+            &used,
+            &held_out,
+            &solution,
+            &rated(robot, log),
+        )
+        .ok_or_else(failed)?;
+        Ok(Fit { unknowns, joints, rows, used, held_out, solution, uncertainty, velocity_delay, deviations })
     }
+}
+
+/// The torque of each joint that it is built for; where the description does not say, twice the largest of the log (Nm; N).
+fn rated(robot: &Robot, log: &Log<'_>) -> Vec<f64> {
+    let largest = |j: usize| (0..log.len()).map(|row| log.tau_of(row)[j].abs()).fold(0.0, f64::max);
+    let limits = robot.effort_limits().into_iter().enumerate();
+    limits.map(|(j, limit)| if limit.is_finite() && limit > 0.0 { limit } else { 2.0 * largest(j) }).collect()
 }
 
 /// How large each term of a joint may be: each but the bias alone could be all of its torque.

@@ -17,6 +17,7 @@ mod hysteresis;
 mod judged;
 mod lead;
 mod log;
+mod model_errors;
 mod noise;
 mod normal;
 mod notes;
@@ -34,6 +35,7 @@ mod uncertainty;
 mod unknowns;
 
 pub use crate::detection::Tail;
+pub use crate::torque::ModelError;
 pub use calibrate::calibrate;
 pub use calibration::{BodyInertia, Calibration, CalibrationOptions, Payload};
 pub use excitation::{exciting_motion, Excitation, ExcitationPlanner, Motion};

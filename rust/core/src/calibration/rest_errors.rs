@@ -240,7 +240,7 @@ fn tails(
     for part in parts {
         let source = part.robot.as_ref().unwrap_or(robot);
         let variances = noise.variances(source)?;
-        let mut test = ContactTest::new(Arc::clone(source), &variances, step, &levels, FOLLOW_TIME);
+        let mut test = ContactTest::new(Arc::clone(source), &variances, step, &levels, &[], FOLLOW_TIME);
         let mut largest = vec![0.0_f64; gains.len()];
         let (mut since, mut window) = (0.0, 0.0);
         part.each_row(robot, log, skipped, step, |row| {

@@ -12,6 +12,7 @@ use super::friction::{Friction, REVERSALS};
 use super::hysteresis::WIDTHS;
 use super::judged::Judged;
 use super::log::Log;
+use super::model_errors::model_errors;
 use super::noise::{estimate, RELATIVE};
 use super::notes::{notes, JointFacts};
 use super::rest_errors::rest_errors;
@@ -44,7 +45,7 @@ impl Fit {
         let deviation = |term: usize| {
             let variance = |j| {
                 let k = self.unknowns.term(j, term);
-                self.covariance[(k, k)]
+                self.uncertainty.stated[(k, k)]
             };
             (0..nv).map(|j| f64::sqrt(variance(j))).collect::<Vec<f64>>()
         };
@@ -62,6 +63,14 @@ impl Fit {
         let step_of = |rows: [usize; 2]| rows.map(|row| log.time[self.rows[row].index]);
         let contacts: Vec<[f64; 2]> = stretches(&self.used).into_iter().map(step_of).collect();
         let (noise, tails) = self.noise(robot, log, options, step, &found.friction.coulomb)?;
+        let left: Vec<f64> =
+            (0..nv).map(|j| mean_square(&self.held_out.residuals, &self.used, j).sqrt()).collect();
+        // External torques have no weights in them.
+        let model_errors = if options.torque_is_external {
+            vec![]
+        } else {
+            model_errors(robot, &self.unknowns, &self.solution.z, &self.uncertainty.elsewhere, &left)
+        };
         Ok(Calibration {
             torque_bias_std: deviation(BIAS),
             coulomb_std: with_shape(COULOMB, 0),
@@ -72,7 +81,8 @@ impl Fit {
             inertial_change: self.held_out.change,
             noise,
             tails,
-            residual: (0..nv).map(|j| mean_square(&self.held_out.residuals, &self.used, j).sqrt()).collect(),
+            model_errors,
+            residual: left,
             false_alarms_per_hour: options.false_alarms_per_hour,
             notes: self.notes(robot, log, &contacts),
             contacts,
@@ -127,7 +137,7 @@ impl Fit {
         let facts = |joint: usize| {
             let uncertain = |term: usize| {
                 let k = self.unknowns.term(joint, term);
-                self.covariance[(k, k)].sqrt() / self.solution.units[k]
+                self.uncertainty.stated[(k, k)].sqrt() / self.solution.units[k]
             };
             let torques = self.rows.iter().map(|row| log.tau_of(row.index)[joint]);
             let count = self.rows.len() as f64;
@@ -147,7 +157,7 @@ impl Fit {
 
     fn with_uncertainty(&self, payload: Payload) -> Payload {
         let Some(first) = self.unknowns.payload() else { return payload };
-        let covariance = |a: usize, b: usize| self.covariance[(first + a, first + b)];
+        let covariance = |a: usize, b: usize| self.uncertainty.stated[(first + a, first + b)];
         // The centre is a quotient of two unknowns.
         let com_variance = |axis: usize| {
             let com = payload.com[axis];

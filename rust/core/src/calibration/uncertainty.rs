@@ -21,6 +21,19 @@ pub(super) const TORQUE_SCALE: f64 = 0.01;
 /// Hysteresis levels off at another torque than the width found says: half of the way to the next width that was tried is one
 /// standard deviation.
 const HALF_WAY: f64 = 0.5;
+/// As long as a torque changes by less than this part of the rated one, hysteresis passes on the change as if the scale were smaller by
+/// so many shares: a log with such changes alone cannot tell it from lighter bodies. Beyond, it levels off.
+const LEVELS_OFF: f64 = 0.01;
+const SMALL_CHANGE: f64 = 3.0;
+/// The share that gears keep as a rule, where a log does not show more: 3 to 8 %.
+const USUAL: f64 = 0.05;
+
+/// Covariances of the unknowns.
+pub(super) struct Uncertainty {
+    pub stated: DMatrix<f64>,
+    /// For torques at other poses: with what hysteresis hides in a log whose torques change little.
+    pub elsewhere: DMatrix<f64>,
+}
 
 /// How much a row of one joint counts: one over its mean square, and over the number of rows that err together.
 pub(super) fn weight(residuals: &[DVector<f64>], used: &[bool], joint: usize) -> f64 {
@@ -43,10 +56,10 @@ fn correlated_rows(residuals: &[DVector<f64>], joint: usize, square: f64) -> f64
     sum
 }
 
-/// The covariance of the unknowns. Weights assume that errors have nothing to do with the motion; what hysteresis leaves has.
+/// The covariances of the unknowns. Weights assume that errors have nothing to do with the motion; what hysteresis leaves has.
 /// Where the spread of what stretches of the log pull at an unknown, by their held-out residuals, is larger, it counts
 /// instead (cluster-robust covariance: Liang and Zeger 1986). What the scale of a torque may be off by, and hysteresis of a
-/// form that levels off earlier or later, is added as what it would move the unknowns by (consider covariance).
+/// form that levels off earlier or later, is added as what it would move the unknowns by (consider covariance). `rated` is the torque that each joint is built for (Nm; N).
 pub(super) fn covariance(
     unknowns: &Unknowns,
     joints: &Joints,
@@ -54,7 +67,8 @@ pub(super) fn covariance(
     used: &[bool],
     held_out: &HeldOut,
     solution: &Solution,
-) -> Option<DMatrix<f64>> {
+    rated: &[f64],
+) -> Option<Uncertainty> {
     let kept = rows.iter().zip(used).filter(|(_, used)| **used).map(|(row, _)| row);
     let normal = Normal::of(unknowns, joints, kept);
     let assumed = solution.covariance(unknowns, &normal)?;
@@ -82,10 +96,10 @@ pub(super) fn covariance(
         ((spread[k] + prior) / assumed[(k, k)].max(f64::MIN_POSITIVE)).max(1.0).sqrt()
     };
     let wider: Vec<f64> = (0..unknowns.len()).map(wider).collect();
-    let mut covariance =
-        DMatrix::from_fn(wider.len(), wider.len(), |a, b| assumed[(a, b)] * wider[a] * wider[b]);
-    for joint in 0..joints.weights.len() {
-        let mut consider = |error: &dyn Fn(&Row) -> f64| {
+    let mut stated = DMatrix::from_fn(wider.len(), wider.len(), |a, b| assumed[(a, b)] * wider[a] * wider[b]);
+    let mut hidden = DMatrix::zeros(stated.nrows(), stated.ncols());
+    for (joint, rated) in rated.iter().enumerate() {
+        let moved = |error: &dyn Fn(&Row) -> f64| {
             let mut pull = DVector::zeros(unknowns.columns());
             let mut entries = vec![];
             for (_, row) in rows.iter().enumerate().filter(|(index, _)| used[*index]) {
@@ -94,22 +108,38 @@ pub(super) fn covariance(
                 let error = joints.weights[joint] * error(row);
                 entries.iter().for_each(|&(column, value)| pull[column] += error * value);
             }
-            let moved = &assumed * transposed_product(&derivative, &pull);
-            covariance.ger(1.0, &moved, &moved, 1.0);
+            &assumed * transposed_product(&derivative, &pull)
         };
-        consider(&|row| TORQUE_SCALE * torque(row, joint));
+        let by_scale = moved(&|row| TORQUE_SCALE * torque(row, joint));
+        stated.ger(1.0, &by_scale, &by_scale, 1.0);
+        let share =
+            joints.shapes[joint].hysteresis.map_or(0.0, |_| solution.z[unknowns.term(joint, HYSTERESIS)]);
+        let [mean, deviation] =
+            moments(rows.iter().zip(used).filter(|(_, used)| **used).map(|(row, _)| torque(row, joint)));
+        let linear = LEVELS_OFF * rated / deviation.max(f64::MIN_POSITIVE);
+        let lost = SMALL_CHANGE * share.max(USUAL) * linear.min(1.0).powi(2);
+        let by_small_changes = moved(&|row| lost * (torque(row, joint) - mean));
+        hidden.ger(1.0, &by_small_changes, &by_small_changes, 1.0);
         let Some(width) = joints.shapes[joint].hysteresis else { continue };
-        let share = solution.z[unknowns.term(joint, HYSTERESIS)];
         let size =
             |width: usize| rows.iter().map(|row| kept_back(row, joint, width).powi(2)).sum::<f64>().sqrt();
         for other in [width.saturating_sub(1), (width + 1).min(WIDTHS.len() - 1)] {
             let as_large = size(width) / size(other).max(f64::MIN_POSITIVE);
-            consider(&|row| {
+            let by_form = moved(&|row| {
                 HALF_WAY * share * (as_large * kept_back(row, joint, other) - kept_back(row, joint, width))
             });
+            stated.ger(1.0, &by_form, &by_form, 1.0);
         }
     }
-    Some(covariance)
+    Some(Uncertainty { elsewhere: &stated + hidden, stated })
+}
+
+/// Mean and standard deviation.
+fn moments(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
+    let count = values.clone().count().max(1) as f64;
+    let mean = values.clone().sum::<f64>() / count;
+    let variance = values.map(|value| (value - mean).powi(2)).sum::<f64>() / count;
+    [mean, variance.sqrt()]
 }
 
 /// The variance of each unknown by what leaving out each block changes (jackknife: Quenouille 1956).

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::free_directions::FreeDirections;
 use super::friction_errors::FrictionErrors;
+use super::model_errors::ModelErrors;
 use super::payload_errors::{Load, PayloadErrors};
 use super::recent_torque::RecentTorque;
 use super::signal::Signal;
@@ -12,7 +13,7 @@ use super::velocity_covariance::VelocityCovariance;
 use crate::math::chi_square::standard_deviations;
 use crate::observer::{ObserverBank, Step};
 use crate::robot::{Kinematics, Robot};
-use crate::torque::ErrorVariances;
+use crate::torque::{ErrorVariances, ModelError};
 
 /// Gains of the bank (1/s): a slow one sees weak contacts, a fast one hard impacts early.
 pub(crate) const GAINS: [f64; 3] = [8.0, 50.0, 200.0];
@@ -71,6 +72,7 @@ impl ContactTest {
         variances: &ErrorVariances,
         dt: f64,
         levels: &[Level],
+        model_errors: &[ModelError],
         follow_time: f64,
     ) -> Self {
         let nv = robot.nv();
@@ -81,7 +83,11 @@ impl ContactTest {
             bank: Some(ObserverBank::new(nv, dt, &gains)),
             signals: levels.iter().map(signal).collect(),
             velocity: VelocityCovariance::new(&robot, &variances.velocity),
-            slow: SlowErrors::new(variances.slow.clone(), follow_time),
+            slow: SlowErrors::new(
+                variances.slow.clone(),
+                ModelErrors::new(model_errors.to_vec(), nv),
+                follow_time,
+            ),
             friction: FrictionErrors::new(nv),
             payload: PayloadErrors::new(nv),
             next: 0,
@@ -104,10 +110,11 @@ impl ContactTest {
         dt: f64,
         gain: &[f64],
         level: Level,
+        model_errors: &[ModelError],
         follow_time: f64,
     ) -> Self {
         let signal = Signal::new(variances, gain, dt, level.level, level.gaussian);
-        let test = ContactTest::new(robot, variances, dt, &[], follow_time);
+        let test = ContactTest::new(robot, variances, dt, &[], model_errors, follow_time);
         ContactTest { bank: None, signals: vec![signal], ..test }
     }
 
@@ -119,6 +126,7 @@ impl ContactTest {
             bank.advance(unexplained, step);
         }
         self.velocity.advance(&self.robot, kinematics);
+        self.slow.of_model_mut().advance(&self.robot, kinematics, v);
         self.friction.advance(v, step.length(self.dt));
         self.payload.advance(&self.robot, kinematics, step.length(self.dt));
         let Self { signals, velocity, slow, friction, payload, .. } = self;
@@ -232,8 +240,8 @@ impl ContactTest {
         for (i, deviation) in deviations.iter_mut().enumerate() {
             let share = signal.model_share(i);
             let slow = match before {
-                Some((_, age)) => slow.change(i, share, age),
-                None => slow.variance(i, share),
+                Some((_, age)) => slow.change(i, share, age) + slow.of_model().change(i),
+                None => slow.variance(i, share) + slow.of_model().unfollowed(i),
             };
             *deviation = (signal.fast_variance(i, velocity, friction) + slow).sqrt();
         }

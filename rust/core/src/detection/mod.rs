@@ -6,6 +6,7 @@ mod false_alarms;
 mod free_directions;
 mod friction_errors;
 mod gate;
+mod model_errors;
 mod payload_errors;
 mod recent_torque;
 mod release;

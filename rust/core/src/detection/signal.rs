@@ -103,6 +103,7 @@ impl Signal {
                 *value = product * root[i] * other;
             }
             row[i] += torque[i] + slow.variance(i, model[i]) + of_friction[i] * shares[i];
+            slow.of_model().add_to_row(i, row);
             if payload.any() {
                 payload.add_to_row(i, row);
             }

@@ -1,6 +1,7 @@
 //! What is known of the errors that change slowly: bias, friction and masses that are a little off, gears that keep a part
 //! of their load. While nothing touches they are followed; during a contact they drift away from what was known.
 
+use super::model_errors::ModelErrors;
 use crate::torque::SlowNoise;
 
 /// A shorter mean of a first bias holds too much noise (s).
@@ -30,6 +31,7 @@ pub(crate) struct SlowErrors {
     zero: Vec<f64>,
     /// The bias stays this near to it.
     limit: Vec<f64>,
+    of_model: ModelErrors,
     bias: Vec<f64>,
     /// By joint, for how long it has been followed (s): the mean of as long a time is as certain as the bias is.
     age: Vec<f64>,
@@ -46,7 +48,7 @@ pub(crate) struct SlowErrors {
 
 impl SlowErrors {
     /// Errors of a noise are followed by a low-pass of a time constant (s).
-    pub fn new(noise: SlowNoise, time_constant: f64) -> Self {
+    pub fn new(noise: SlowNoise, of_model: ModelErrors, time_constant: f64) -> Self {
         let spread = noise.model.iter().zip(&noise.bias);
         let kept = |of_forces: bool| {
             let alike = spread.clone().zip(&noise.is_force).filter(|(_, is_force)| **is_force == of_forces);
@@ -70,6 +72,7 @@ impl SlowErrors {
                 .collect(),
             time_constant,
             noise,
+            of_model,
         }
     }
 
@@ -86,13 +89,15 @@ impl SlowErrors {
         for (j, torque) in torque.iter().enumerate() {
             self.age[j] = (self.age[j] + dt).min(self.time_constant);
             let share = (dt / self.age[j].max(FIRST_TIME)).min(1.0);
-            let (zero, limit) = (self.zero[j], self.limit[j]);
+            self.of_model.follow(j, share);
+            let (zero, limit) = (self.zero[j], self.limit(j));
             self.bias[j] = (self.bias[j] + share * (torque - self.bias[j])).clamp(zero - limit, zero + limit);
             let left = (1.0 - share).powi(2);
             self.unknown[j] *= left;
             self.lost[j] *= left;
             self.kept[j] *= left;
         }
+        self.of_model.keep(dt);
     }
 
     /// After a contact a bias is less certain, and followed as one of as short a time: what gears have kept shows at once.
@@ -129,6 +134,7 @@ impl SlowErrors {
             let load = self.noise.relative[k] * (torque[k] - self.bias[k]);
             *kept = kept.max((load * load).min(self.largest_kept[k]));
             self.bias[k] += forgotten * (self.zero[k] - self.bias[k]);
+            self.of_model.forget(k, forgotten);
         }
     }
 
@@ -150,19 +156,21 @@ impl SlowErrors {
 
     /// Takes a torque that a contact left behind for the bias.
     pub fn set(&mut self, bias: &[f64]) {
+        self.of_model.take();
         self.bias.copy_from_slice(bias);
         self.lost.fill(0.0);
     }
 
     /// Whether a torque may be the bias after a contact that may have left so much in each joint (Nm).
     pub fn allows(&self, torque: &[f64], left: impl Fn(usize) -> f64) -> bool {
-        let limits = self.limit.iter().enumerate().map(|(k, limit)| limit + left(k));
+        let limits = (0..self.limit.len()).map(|k| self.limit(k) + left(k));
         let from_zero = torque.iter().zip(&self.zero).map(|(torque, zero)| torque - zero);
         from_zero.zip(limits).all(|(torque, limit)| torque.abs() <= limit)
     }
 
     /// Takes the torque of an untouched robot for the bias, which is then known, and which it falls back to.
     pub fn tare(&mut self, torque: &[f64]) {
+        self.of_model.take();
         self.zero.copy_from_slice(torque);
         self.bias.copy_from_slice(torque);
         self.kept.fill(0.0);
@@ -172,6 +180,21 @@ impl SlowErrors {
         self.unsettled = 0.0;
     }
 
+    /// How far joint `j`'s bias may be from zero (Nm).
+    fn limit(&self, j: usize) -> f64 {
+        self.limit[j].hypot(LARGEST_BIAS * self.of_model.variance(j).sqrt())
+    }
+
+    /// Errors of the model that change with pose and speed, beside the variances.
+    pub fn of_model(&self) -> &ModelErrors {
+        &self.of_model
+    }
+
+    /// The same, to be advanced.
+    pub fn of_model_mut(&mut self) -> &mut ModelErrors {
+        &mut self.of_model
+    }
+
     /// The bias `(nv,)`.
     pub fn bias(&self) -> &[f64] {
         &self.bias
@@ -179,6 +202,7 @@ impl SlowErrors {
 
     /// Forgets the bias.
     pub fn reset(&mut self) {
+        self.of_model.reset();
         self.zero.fill(0.0);
         self.bias.fill(0.0);
         self.kept.fill(0.0);
@@ -205,7 +229,7 @@ mod tests {
             relative: two(0.05),
             is_force: vec![false; 2],
         };
-        SlowErrors::new(noise, 3.0)
+        SlowErrors::new(noise, ModelErrors::new(vec![], 2), 3.0)
     }
 
     fn follow(errors: &mut SlowErrors, torque: [f64; 2], seconds: f64) {

@@ -118,11 +118,12 @@ impl MonitorOptions {
         let variances = calibration.noise.variances(corrected)?;
         let (robot, nv) = (Arc::clone(corrected), corrected.nv());
         let levels = calibration.levels(nv, self.dt);
+        let model_errors = &calibration.model_errors[..];
         Ok(Some(if one_torque || levels.is_empty() {
             let level = calibration.level_at(nv, gain, self.dt);
-            ContactTest::of_one_torque(robot, &variances, self.dt, gain, level, time)
+            ContactTest::of_one_torque(robot, &variances, self.dt, gain, level, model_errors, time)
         } else {
-            ContactTest::new(robot, &variances, self.dt, &levels, time)
+            ContactTest::new(robot, &variances, self.dt, &levels, model_errors, time)
         }))
     }
 

@@ -78,6 +78,10 @@ pub(super) const JOINT_FIELDS: [Field<Calibration, Vec<f64>>; 13] = [
 /// The entry `reversal` of a joint stands behind this one.
 pub(super) const BEFORE_REVERSAL: &str = "viscous_std";
 
+/// Numbers of a joint in a [`ModelError`](crate::calibration::ModelError).
+pub(super) const MODEL_ERROR: &str =
+    "mass (kg), first moment (kg m), bias (Nm or N), viscous (Nm s/rad or N s/m)";
+
 /// How Coulomb friction changes its sign, and the unit of its width.
 pub(super) fn reversal_kind(reversal: Reversal) -> (&'static str, &'static str) {
     match reversal {

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use super::entries::{Entries, Found};
 use super::layout::{
-    nameless, Field, Rule, BEFORE_REVERSAL, DISPLACEMENT, FORMAT, JOINT_FIELDS, NOISE_FIELDS, ROBOT_FIELDS,
-    VELOCITY,
+    nameless, Field, Rule, BEFORE_REVERSAL, DISPLACEMENT, FORMAT, JOINT_FIELDS, MODEL_ERROR, NOISE_FIELDS,
+    ROBOT_FIELDS, VELOCITY,
 };
 use super::yaml::parse;
 use crate::calibration::calibration::negative_moments;
-use crate::calibration::{BodyInertia, Calibration, Friction, Payload, Reversal, Tail};
+use crate::calibration::{BodyInertia, Calibration, Friction, ModelError, Payload, Reversal, Tail};
 use crate::error::{Error, Result};
 use crate::load::read_regular_file;
 use crate::torque::NoiseModel;
@@ -86,6 +86,10 @@ impl Calibration {
             let [gain, level, scale] = entries.as_numbers(&name, item, "1/s, 1, 1", Rule::Any)?;
             calibration.tails.push(Tail { gain, level, scale });
         }
+        // Calibrations of before have none.
+        if entries.names().contains(&"model_errors") {
+            calibration.model_errors = model_errors(entries.inner("model_errors")?, &calibration.joints)?;
+        }
         for (name, item) in entries.items("contacts", "pairs of times [s], from when to when")? {
             calibration.contacts.push(entries.as_numbers(&name, item, "s", Rule::Any)?);
         }
@@ -137,6 +141,7 @@ fn empty(robot: String, fingerprint: String, joints: Vec<String>) -> Calibration
         noise: NoiseModel::default(),
         residual: vec![],
         tails: vec![],
+        model_errors: vec![],
         false_alarms_per_hour: 1.0,
         contacts: vec![],
         notes: vec![],
@@ -174,6 +179,33 @@ fn noise(mut entries: Entries, joints: &[String]) -> Found<NoiseModel> {
     }
     entries.done()?;
     Ok(noise)
+}
+
+fn model_errors(mut entries: Entries, joints: &[String]) -> Found<Vec<ModelError>> {
+    let mut errors: Vec<ModelError> = vec![];
+    for (index, joint) in joints.iter().enumerate() {
+        let items = entries.items(joint, &format!("lists of {MODEL_ERROR}"))?;
+        if index == 0 {
+            let none = || ModelError { bodies: vec![], bias: vec![], viscous: vec![] };
+            errors.resize_with(items.len(), none);
+        }
+        if items.len() != errors.len() {
+            let first = &joints[0];
+            return Err(format!(
+                "model_errors: {joint}: must have as many lists as {first}: {}, not {}",
+                errors.len(),
+                items.len()
+            ));
+        }
+        for ((name, item), error) in items.into_iter().zip(&mut errors) {
+            let [mass, x, y, z, bias, viscous] = entries.as_numbers(&name, item, MODEL_ERROR, Rule::Any)?;
+            error.bodies.push([mass, x, y, z]);
+            error.bias.push(bias);
+            error.viscous.push(viscous);
+        }
+    }
+    entries.done()?;
+    Ok(errors)
 }
 
 fn bodies(mut entries: Entries, joints: &[String]) -> Found<Vec<BodyInertia>> {

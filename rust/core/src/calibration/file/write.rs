@@ -3,7 +3,8 @@
 use std::fmt::Write;
 
 use super::layout::{
-    nameless, reversal_kind, Field, BEFORE_REVERSAL, FORMAT, JOINT_FIELDS, NOISE_FIELDS, ROBOT_FIELDS,
+    nameless, reversal_kind, Field, BEFORE_REVERSAL, FORMAT, JOINT_FIELDS, MODEL_ERROR, NOISE_FIELDS,
+    ROBOT_FIELDS,
 };
 use crate::calibration::{Calibration, Payload};
 use crate::error::{Error, Result};
@@ -122,10 +123,29 @@ impl Calibration {
         file.list("sensor_offsets", "{}", "N and Nm, what a sensor reads without load", offsets)?;
         let tails = self.tails.iter().map(|it| Ok(format!("- {}", numbers(&[it.gain, it.level, it.scale])?)));
         file.list("tails", "[]", "of detection's statistic: gain (1/s), level, scale", tails)?;
+        self.write_model_errors(file)?;
         let contacts = self.contacts.iter().map(|times| Ok(format!("- {}", numbers(times)?)));
         file.list("contacts", "[]", "s, from when to when contacts were left out of the log", contacts)?;
         let notes = self.notes.iter().map(|note| Ok(format!("- {}", text(note))));
         file.list("notes", "[]", "what the motion could not tell", notes)
+    }
+
+    fn write_model_errors(&self, file: &mut Text) -> Result<()> {
+        if self.model_errors.is_empty() {
+            return Ok(());
+        }
+        let what = "one standard deviation of each error that the motion left possible";
+        file.line(0, &format!("model_errors:  # {what}: {MODEL_ERROR}"));
+        for (index, joint) in self.joints.iter().enumerate() {
+            file.line(1, &format!("{}:", text(joint)));
+            for error in &self.model_errors {
+                let [mass, x, y, z] = self.one_a_joint("model_errors", &error.bodies)?[index];
+                let bias = self.one_a_joint("model_errors", &error.bias)?[index];
+                let viscous = self.one_a_joint("model_errors", &error.viscous)?[index];
+                file.line(2, &format!("- {}", numbers(&[mass, x, y, z, bias, viscous])?));
+            }
+        }
+        Ok(())
     }
 
     fn one_a_joint<'a, T>(&self, name: &str, values: &'a [T]) -> Result<&'a [T]> {
