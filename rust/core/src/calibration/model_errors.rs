@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
+use super::noise::SMALLEST;
 use super::unknowns::{Unknowns, BIAS, PARAMETERS, VISCOUS};
 use crate::math::random::Stream;
 use crate::robot::{Kinematics, Robot};
@@ -13,7 +14,8 @@ const MOST: usize = 8;
 const POSES: u64 = 100;
 /// Mass and first moment of a body.
 const WEIGHT: usize = 4;
-/// Mean square over joints and poses, over that of what is left of the torques of the log, up to which errors are in the noise already.
+/// Errors whose mean square over joints and poses is less, relative to what is left of the torques of the log, are in the noise
+/// already.
 const SEEN: f64 = 4.0;
 /// Speeds at which they are compared, as a share of the limits, and where there are none (rad/s; m/s).
 const SPEED: f64 = 0.6;
@@ -58,19 +60,13 @@ pub(super) fn model_errors(
         kinematics.set_configuration(robot, &q);
         for (column, mut torque) in columns.iter().zip(torques.column_iter_mut()) {
             column.torque(robot, &kinematics, &v, torque.as_mut_slice());
-            torque.iter_mut().zip(left).for_each(|(torque, left)| *torque /= left.max(f64::MIN_POSITIVE));
+            torque.iter_mut().zip(left).for_each(|(torque, left)| *torque /= left.max(SMALLEST));
         }
         squares.gemm_tr(1.0, &torques, &torques, 1.0);
     }
     let eigen = SymmetricEigen::new(squares / (POSES as f64 * nv as f64));
     let mut order: Vec<usize> = (0..count).collect();
     order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
-    if std::env::var("DBG").is_ok() {
-        eprintln!(
-            "eigen {:.2?} left {left:.3?}",
-            order.iter().take(10).map(|k| eigen.eigenvalues[*k]).collect::<Vec<_>>()
-        );
-    }
     let kept = order.into_iter().take(MOST).filter(|k| eigen.eigenvalues[*k] > SEEN);
     let error = |k: usize| {
         let share = 1.0 - SEEN / eigen.eigenvalues[k];
