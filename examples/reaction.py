@@ -13,6 +13,7 @@ from contactsense import sim
 DT = 0.001  # [s]
 SPEED = 0.2  # of the hand, forward and back [m/s]
 TURN = 0.2  # of the joints while the torques do not determine a force [rad/s]
+LEFT = 3.0  # an external torque that is smaller (norm) may be what is left of a contact that has ended [Nm]
 DAMPING = 20.0  # of the admittance [Nm s/rad]
 WALL, STIFFNESS = 0.04, 10_000.0  # in front of the hand [m], [N/m]
 START, END = 0.4, 1.1  # of the motion [s]
@@ -41,7 +42,8 @@ def retract(report: cs.ContactReport, q: np.ndarray) -> np.ndarray:
     if np.isfinite([contact.point, contact.force]).all():
         direction = contact.force / np.linalg.norm(contact.force)
         return move_point(q, contact.link, contact.point, SPEED * direction)
-    return TURN * report.external_torque / np.linalg.norm(report.external_torque)
+    size = np.linalg.norm(report.external_torque)
+    return TURN * report.external_torque / size if size > LEFT else np.zeros(robot.nv)
 
 
 def admittance(report: cs.ContactReport, q: np.ndarray) -> np.ndarray:
