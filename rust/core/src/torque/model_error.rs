@@ -43,10 +43,12 @@ impl ModelError {
             let body = index + 1;
             let state = &kinematics.bodies[body];
             let moment = state.position * mass + state.rotation * Vector3::new(x, y, z);
-            let couple = moment.cross(&robot.gravity);
+            // What holds it up.
+            let force = robot.gravity * -mass;
+            let couple = robot.gravity.cross(&moment);
             for_each_column(robot, kinematics, body, &Vector3::zeros(), |k, column| {
                 let (linear, angular) = (column.fixed_rows::<3>(0), column.fixed_rows::<3>(3));
-                torque[k] += linear.dot(&robot.gravity) * mass + angular.dot(&couple);
+                torque[k] += linear.dot(&force) + angular.dot(&couple);
             });
         }
     }
