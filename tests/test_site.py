@@ -59,5 +59,5 @@ def test_compiled_classes_have_types_in_the_reference(site: Path) -> None:
 
 def test_equations_are_typeset_without_a_network(site: Path) -> None:
     page = (site / "noise.html").read_text(encoding="utf-8")
-    assert page.count('<math xmlns="http://www.w3.org/1998/Math/MathML" display="block">') == 2
+    assert page.count('<math xmlns="http://www.w3.org/1998/Math/MathML" display="block">') == 3
     assert '<script src="http' not in page
