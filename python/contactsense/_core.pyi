@@ -2655,8 +2655,9 @@ class ContactMap:
     """Says where on a robot a contact is, and how certain that is: the posterior over samples of all surface.
 
     Beforehand, every link is equally likely, and on a link every place of the same area. Every sample of the surface is a
-    contact of unknown force: along the inward normal with a logarithm that is uniform from 2 to 300 N, across it by friction. Where the posterior is narrower than the samples are apart, they are divided on the true
-    surface. One contact; one thread at a time may use it.
+    contact of unknown force: along the inward normal with a logarithm that is uniform from 2 to 300 N, across it by friction.
+    Where the posterior is narrower than the samples are apart, they are divided on the true surface. One contact; one thread
+    at a time may use it.
 
     Args:
         robot: The robot.

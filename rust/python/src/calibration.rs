@@ -277,14 +277,7 @@ impl PyCalibration {
     fn model_errors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let errors = &self.0.model_errors;
         let shape = [errors.len(), self.0.joints.len(), 6];
-        let of_joint = |((body, bias), viscous): ((&[f64; 4], &f64), &f64)| {
-            let [mass, x, y, z] = *body;
-            [mass, x, y, z, *bias, *viscous]
-        };
-        let all = errors
-            .iter()
-            .flat_map(|error| error.bodies.iter().zip(&error.bias).zip(&error.viscous).map(of_joint));
-        let flat: Vec<f64> = all.flatten().collect();
+        let flat: Vec<f64> = errors.iter().flat_map(|error| error.by_joint()).flatten().collect();
         Ok(read_only(PyArray1::from_vec(py, flat).reshape(shape)?))
     }
 

@@ -21,8 +21,8 @@ pub(super) const TORQUE_SCALE: f64 = 0.01;
 /// Hysteresis levels off at another torque than the width found says: half of the way to the next width that was tried is one
 /// standard deviation.
 const HALF_WAY: f64 = 0.5;
-/// As long as a torque changes by less than this part of the rated one, hysteresis passes on the change as if the scale were smaller by
-/// so many shares: a log with such changes alone cannot tell it from lighter bodies. Beyond, it levels off.
+/// As long as a torque changes by less than this part of the rated one, hysteresis passes on the change as if the scale were
+/// smaller by so many shares: a log with such changes alone cannot tell it from lighter bodies. Beyond, it levels off.
 const LEVELS_OFF: f64 = 0.01;
 const SMALL_CHANGE: f64 = 3.0;
 /// The share that gears keep as a rule, where a log does not show more: 3 to 8 %.
@@ -59,7 +59,8 @@ fn correlated_rows(residuals: &[DVector<f64>], joint: usize, square: f64) -> f64
 /// The covariances of the unknowns. Weights assume that errors have nothing to do with the motion; what hysteresis leaves has.
 /// Where the spread of what stretches of the log pull at an unknown, by their held-out residuals, is larger, it counts
 /// instead (cluster-robust covariance: Liang and Zeger 1986). What the scale of a torque may be off by, and hysteresis of a
-/// form that levels off earlier or later, is added as what it would move the unknowns by (consider covariance). `rated` is the torque that each joint is built for (Nm; N).
+/// form that levels off earlier or later, is added as what it would move the unknowns by (consider covariance).
+/// `rated` is the torque that each joint is built for (Nm; N).
 pub(super) fn covariance(
     unknowns: &Unknowns,
     joints: &Joints,
@@ -69,8 +70,8 @@ pub(super) fn covariance(
     solution: &Solution,
     rated: &[f64],
 ) -> Option<Uncertainty> {
-    let kept = rows.iter().zip(used).filter(|(_, used)| **used).map(|(row, _)| row);
-    let normal = Normal::of(unknowns, joints, kept);
+    let kept = || rows.iter().zip(used).filter(|(_, used)| **used).map(|(row, _)| row);
+    let normal = Normal::of(unknowns, joints, kept());
     let assumed = solution.covariance(unknowns, &normal)?;
     let derivative = unknowns.derivative(&solution.z);
     let mut pulls = vec![DVector::zeros(unknowns.columns()); CLUSTERS];
@@ -102,7 +103,7 @@ pub(super) fn covariance(
         let moved = |error: &dyn Fn(&Row) -> f64| {
             let mut pull = DVector::zeros(unknowns.columns());
             let mut entries = vec![];
-            for (_, row) in rows.iter().enumerate().filter(|(index, _)| used[*index]) {
+            for row in kept() {
                 entries.clear();
                 columns(unknowns, joints, row, joint, &mut entries);
                 let error = joints.weights[joint] * error(row);
@@ -112,15 +113,14 @@ pub(super) fn covariance(
         };
         let by_scale = moved(&|row| TORQUE_SCALE * torque(row, joint));
         stated.ger(1.0, &by_scale, &by_scale, 1.0);
-        let share =
-            joints.shapes[joint].hysteresis.map_or(0.0, |_| solution.z[unknowns.term(joint, HYSTERESIS)]);
-        let [mean, deviation] =
-            moments(rows.iter().zip(used).filter(|(_, used)| **used).map(|(row, _)| torque(row, joint)));
+        let width = joints.shapes[joint].hysteresis;
+        let share = width.map_or(0.0, |_| solution.z[unknowns.term(joint, HYSTERESIS)]);
+        let [mean, deviation] = moments(kept().map(|row| torque(row, joint)));
         let linear = LEVELS_OFF * rated / deviation.max(f64::MIN_POSITIVE);
         let lost = SMALL_CHANGE * share.max(USUAL) * linear.min(1.0).powi(2);
         let by_small_changes = moved(&|row| lost * (torque(row, joint) - mean));
         hidden.ger(1.0, &by_small_changes, &by_small_changes, 1.0);
-        let Some(width) = joints.shapes[joint].hysteresis else { continue };
+        let Some(width) = width else { continue };
         let size =
             |width: usize| rows.iter().map(|row| kept_back(row, joint, width).powi(2)).sum::<f64>().sqrt();
         for other in [width.saturating_sub(1), (width + 1).min(WIDTHS.len() - 1)] {

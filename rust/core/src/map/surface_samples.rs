@@ -52,7 +52,7 @@ impl SurfaceSamples {
             .collect();
         let mut log_densities = vec![f64::NEG_INFINITY; robot.links().len()];
         let exposed = areas.iter().filter(|area| **area > 0.0).count() as f64;
-        for (&link, area) in wanted.iter().zip(&areas) {
+        for (&link, area) in wanted.iter().zip(&areas).filter(|(_, area)| **area > 0.0) {
             log_densities[link] = -(exposed * area).ln();
         }
         let roots: f64 = areas.iter().map(|area| area.sqrt()).sum();

@@ -32,6 +32,12 @@ pub struct ModelError {
 }
 
 impl ModelError {
+    /// By joint, where each has one velocity variable: mass, the three first moments, bias, viscous friction.
+    pub fn by_joint(&self) -> impl Iterator<Item = [f64; 6]> + '_ {
+        let of_joints = self.bodies.iter().zip(&self.bias).zip(&self.viscous);
+        of_joints.map(|((&[mass, x, y, z], &bias), &viscous)| [mass, x, y, z, bias, viscous])
+    }
+
     /// What it does to the external torque at a pose and velocities, `(nv,)` (Nm, N).
     pub(crate) fn torque(&self, robot: &Robot, kinematics: &Kinematics, v: &[f64], torque: &mut [f64]) {
         let of_joints = self.bias.iter().zip(&self.viscous).zip(v);

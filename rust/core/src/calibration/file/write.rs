@@ -134,15 +134,19 @@ impl Calibration {
         if self.model_errors.is_empty() {
             return Ok(());
         }
+        let mut errors = Vec::with_capacity(self.model_errors.len());
+        for error in &self.model_errors {
+            self.one_a_joint("model_errors", &error.bodies)?;
+            self.one_a_joint("model_errors", &error.bias)?;
+            self.one_a_joint("model_errors", &error.viscous)?;
+            errors.push(error.by_joint().collect::<Vec<_>>());
+        }
         let what = "one standard deviation of each error that the motion left possible";
         file.line(0, &format!("model_errors:  # {what}: {MODEL_ERROR}"));
         for (index, joint) in self.joints.iter().enumerate() {
             file.line(1, &format!("{}:", text(joint)));
-            for error in &self.model_errors {
-                let [mass, x, y, z] = self.one_a_joint("model_errors", &error.bodies)?[index];
-                let bias = self.one_a_joint("model_errors", &error.bias)?[index];
-                let viscous = self.one_a_joint("model_errors", &error.viscous)?[index];
-                file.line(2, &format!("- {}", numbers(&[mass, x, y, z, bias, viscous])?));
+            for error in &errors {
+                file.line(2, &format!("- {}", numbers(&error[index])?));
             }
         }
         Ok(())
