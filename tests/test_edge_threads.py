@@ -111,7 +111,7 @@ SLOW = """
     surface = robot.surface(robot.link_names[-1])
     rows = np.random.default_rng(0).normal(size=(1_500_000, 3))
     if "{name}" == "update":
-        tracker = cs.ContactParticleFilter(robot, particles=1_000_000)
+        tracker = cs.ContactParticleFilter(robot, particles=2_000_000)
         q, torque = np.full(7, 0.4), np.array([1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])
     calls = {{
         "update": lambda: tracker.update(q, torque),
@@ -121,7 +121,7 @@ SLOW = """
         "exciting_motion": lambda: cs.exciting_motion(robot, 20.0),
     }}
     main = threading.main_thread().ident
-    send = lambda: threading.Timer(0.05, signal.pthread_kill, (main, signal.SIGUSR1)).start()
+    send = lambda: threading.Timer(0.01, signal.pthread_kill, (main, signal.SIGUSR1)).start()
     handled = []
     signal.signal(signal.SIGUSR1, lambda *_: handled.append(time.monotonic()))
     send()
