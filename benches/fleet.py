@@ -48,7 +48,7 @@ def main() -> int:
 
 def _seconds(logs: list[Path], calibration: Path, out: Path, engine: str, workers: int) -> float:
     shutil.rmtree(out, ignore_errors=True)
-    command = [sys.executable, "-m", "contactsense.cli", "replay", *map(str, logs), "--robot", ROBOT]
+    command = [sys.executable, "-m", "contactsense", "replay", *map(str, logs), "--robot", ROBOT]
     command += ["--calibration", str(calibration), "--out", str(out), "--engine", engine]
     start = time.perf_counter()
     subprocess.run([*command, "--workers", str(workers)], check=True, capture_output=True)

@@ -221,7 +221,7 @@ def test_a_picture_without_suffix_is_a_png(tmp_path: Path) -> None:
 def test_a_full_output_is_a_line(arguments: list[str]) -> None:
     with open("/dev/full", "w") as full:
         ended = subprocess.run(
-            [sys.executable, "-m", "contactsense.cli", *arguments],
+            [sys.executable, "-m", "contactsense", *arguments],
             stdout=full,
             stderr=subprocess.PIPE,
             text=True,

@@ -33,7 +33,7 @@ def test_commands_exist(figure: figures.Figure, capsys: pytest.CaptureFixture[st
         for python, module, name, *arguments in commands:
             assert (python, module) == ("python", "-m")
             options = {part for part in arguments if part.startswith("--")}
-            if name == "contactsense.cli":
+            if name == "contactsense":
                 words = arguments[: 2 if arguments[0] == "study" else 1]
                 assert run_cli([*words, "--help"]) == 0
                 told = capsys.readouterr().out
@@ -83,7 +83,7 @@ def test_a_figure_without_an_entry_is_listed(copied: Path, capsys: pytest.Captur
 
 def test_a_table_of_another_command_is_found(copied: Path) -> None:
     records = record.load()
-    records["demo_arm"]["commands"] = ["python -m contactsense.cli demo --seed 11"]
+    records["demo_arm"]["commands"] = ["python -m contactsense demo --seed 11"]
     record.save(records)
     assert "demo_arm: recorded of another command" in figures.differences()
 

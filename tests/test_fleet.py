@@ -233,7 +233,7 @@ def command(logs: list[Path], folder: Path, *more: str) -> list[str]:
 def test_both_engines_give_the_same_data_set(more: list[str], logs: list[Path], tmp_path: Path) -> None:
     for engine in ("local", "ray"):
         arguments = command(logs, tmp_path / engine, "--engine", engine, *more)
-        subprocess.run([sys.executable, "-m", "contactsense.cli", *arguments], check=True, timeout=300)
+        subprocess.run([sys.executable, "-m", "contactsense", *arguments], check=True, timeout=300)
     assert content(tmp_path / "local") == content(tmp_path / "ray")
 
 

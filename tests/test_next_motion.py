@@ -1,14 +1,26 @@
 """The next motion in contact: its bounds, and that it locates contacts sooner than random ones."""
 
 import copy
+import dataclasses
+import io
 import pickle
 
 import numpy as np
 import pytest
+from rich.console import Console
 from robots import SHARED
 
 import contactsense as cs
-from contactsense_studies.next_motion import MOST, Touched, locate, median_motions, trials
+from contactsense_studies.harness import save_pictures
+from contactsense_studies.memory.methods import METHODS
+from contactsense_studies.next_motion.data import as_data
+from contactsense_studies.next_motion.options import Options
+from contactsense_studies.next_motion.plots import PICTURES
+from contactsense_studies.next_motion.report import print_study
+from contactsense_studies.next_motion.score import errors_after, score
+from contactsense_studies.next_motion.study import run
+from contactsense_studies.next_motion.touched import Touched
+from contactsense_studies.next_motion.trial import WAYS, Outcome
 
 IIWA = cs.Robot.named("iiwa14")
 MAX_FORCE, MAX_STEP = 60.0, np.deg2rad(1.0)
@@ -160,24 +172,69 @@ def test_wrong_objects_are_named():
 
 
 @pytest.mark.shared
-def test_planned_motions_locate_a_contact_sooner_than_random_ones():
+def test_chosen_motions_locate_a_contact_sooner_than_random_ones():
     # Few joints feel link 3. The random motions are drawn with knowledge of the true contact, and keep it.
     folder = SHARED / "robots" / "iiwa14"
-    robot = cs.Robot.from_urdf(folder / "iiwa14.urdf", package_dirs=[folder])
-    random, chosen = (
-        trials(robot, ("iiwa_link_3",), way, 8, max_force=MAX_FORCE, max_step=MAX_STEP, most=12)
-        for way in ("random", "planned")
+    options = Options(
+        robot=str(folder / "iiwa14.urdf"),
+        package_dirs=(str(folder),),
+        links=("iiwa_link_3",),
+        methods=("filter",),
+        trials=50,
     )
-    assert [each.link for each in random] == [each.link for each in chosen]
-    assert median_motions(chosen) <= 0.5 * median_motions(random)
-    for outcome in chosen:
-        assert outcome.greatest_force <= MAX_FORCE
+    study = run(options)
+    chosen, random = (score(study.outcomes("iiwa_link_3", "filter", way)) for way in WAYS)
+    assert chosen.trials == random.trials == 50
+    assert chosen.motions <= 0.5 * random.motions
+    assert chosen.greatest_force <= MAX_FORCE
 
 
-def test_a_trial_is_the_same_for_the_same_seed():
-    one, same = (
-        locate(IIWA, "iiwa_link_5", "planned", seed=4, max_force=MAX_FORCE, max_step=MAX_STEP, particles=1000)
-        for _ in range(2)
-    )
-    assert one == same
-    assert one.motions is None or one.motions <= MOST
+@pytest.fixture(scope="module")
+def study():
+    return run(Options(links=("iiwa_link_4", "iiwa_link_5"), trials=2, particles=2000, motions=6, seed=4))
+
+
+def test_a_trial_is_the_same_for_the_same_seed(study):
+    link, number = "iiwa_link_5", 1
+    (trial,) = (each for each in study.trials if (each.link, each.number) == (link, number))
+    same = run(dataclasses.replace(study.options, links=(link,)), processes=1)
+    (again,) = (each for each in same.trials if each.number == number)
+    assert trial == again
+
+
+def test_fourth_links_are_located_within_a_few_motions(study):
+    for link in study.links:
+        for method in ("filter", "sampler"):
+            for outcome in study.outcomes(link, method, "chosen"):
+                assert outcome.motions is not None
+                assert outcome.greatest_force <= MAX_FORCE
+                assert not outcome.lost
+
+
+def test_the_study_shows_what_it_found(study, tmp_path):
+    shown = io.StringIO()
+    print_study(study, Console(file=shown, width=100))
+    assert all(method.name in shown.getvalue() for method in METHODS)
+    data = as_data(study)
+    assert data["complete"]
+    assert len(data["scores"]) == 2 * len(METHODS) * len(WAYS) == len(data["trials"]) / 2
+    (picture,) = save_pictures(PICTURES, study, tmp_path)
+    assert picture.stat().st_size > 10_000
+
+
+def test_trials_in_which_the_point_is_never_close_are_the_longest():
+    errors = ((0.3, 0.005), (0.3, 0.2, 0.1), (np.inf, 0.2, 0.004))
+    outcomes = [Outcome(each, 20.0, False) for each in errors]
+    of = score(outcomes)
+    assert [each.motions for each in outcomes] == [1, None, 2]
+    assert (of.motions, of.never) == (2.0, pytest.approx(1 / 3))
+    assert score(outcomes[:2]).motions == np.inf
+    assert errors_after(outcomes, 3) == [0.3, 0.2, 0.005, 0.005]
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"motions": 0}, {"max_force": 0.0}, {"max_step": -1.0}, {"trials": 0}, {"methods": ("guess",)}]
+)
+def test_wrong_options_are_named(wrong):
+    with pytest.raises(cs.InputError, match=next(iter(wrong))):
+        Options(**wrong)

@@ -163,7 +163,7 @@ def test_the_command_writes_a_page(tmp_path: Path) -> None:
     page = tmp_path / "pushed.html"
     arguments = ["view", str(file), "--robot", "iiwa14", "--threshold", "0.6", "--port", str(free_port())]
     done = subprocess.run(
-        [sys.executable, "-m", "contactsense.cli", *arguments, "--html", str(page), "--end", "0.3"],
+        [sys.executable, "-m", "contactsense", *arguments, "--html", str(page), "--end", "0.3"],
         check=True, timeout=200, capture_output=True, text=True,
     )  # fmt: skip
     assert done.stdout == ""

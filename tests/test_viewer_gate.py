@@ -331,7 +331,7 @@ def test_a_place_that_cannot_be_listened_at_is_named() -> None:
     with pytest.raises(cs.InputError, match=r"^host: cannot listen at '192\.0\.2\.1', port "):
         cs.view(monitor, host="192.0.2.1", port=free_port())
     done = subprocess.run(
-        [sys.executable, "-m", "contactsense.cli", "view", "a.csv", "--robot", "iiwa14", "--token", "x"],
+        [sys.executable, "-m", "contactsense", "view", "a.csv", "--robot", "iiwa14", "--token", "x"],
         capture_output=True, text=True, timeout=100, check=False,
     )  # fmt: skip
     assert done.returncode == 2

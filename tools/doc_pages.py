@@ -84,7 +84,7 @@ def environment(folder: Path) -> dict[str, str]:
     programs = folder.parent / f"{folder.name}-bin"
     programs.mkdir(exist_ok=True)
     command = programs / "contactsense"
-    command.write_text(f'#!/bin/sh\nexec {shlex.quote(sys.executable)} -m contactsense.cli "$@"\n')
+    command.write_text(f'#!/bin/sh\nexec {shlex.quote(sys.executable)} -m contactsense "$@"\n')
     command.chmod(0o755)
     paths = [str(STAND_INS), *filter(None, [os.environ.get("PYTHONPATH")])]
     return {

@@ -42,7 +42,7 @@ def compare(pace: Pace) -> list[Comparison]:
     with tempfile.TemporaryDirectory() as name, all_cores():
         folder = Path(name)
         _prepare(folder, seconds)
-        command = [sys.executable, "-m", "contactsense.cli", "bridge", str(folder / CONFIGURATION)]
+        command = [sys.executable, "-m", "contactsense", "bridge", str(folder / CONFIGURATION)]
         ours = _run(folder, "bridge", [*command, "--listen"])
         echo = _run(folder, "echo", [sys.executable, "-m", "benches.compare.bridge_echo"])
     task = f"bridge, iiwa14, {seconds:.0f} s at 1 kHz, {len(ours.torque):,} sent, external torque"

@@ -17,6 +17,7 @@ from .example_robots import robot_of
 from .harness import AsJson, add_study, print_json
 from .identifiability.options import Options as IdentifiabilityOptions
 from .memory.options import Options as MemoryOptions
+from .next_motion.options import Options as NextMotionOptions
 from .real_arm.options import Options as RealArmOptions
 from .recovery.options import Options as RecoveryOptions
 from .several_contacts.options import Options as SeveralContactsOptions
@@ -130,6 +131,12 @@ add_study(
     "memory",
     "Contacts on a moving arm, located by a sampler that remembers, by a particle filter and by a map.",
     MemoryOptions,
+)
+add_study(
+    app,
+    "next_motion",
+    "Motions in contact that are chosen for what they tell, beside random ones.",
+    NextMotionOptions,
 )
 add_study(
     app,

@@ -8,6 +8,7 @@ from . import (
     identifiability,
     long_studies,
     memory,
+    next_motion,
     noisy_contacts,
     real_arm,
     recovery,
@@ -17,7 +18,7 @@ from . import (
 from .entry import Figure
 
 PYTHON = ("python", "-m")
-CONTACTSENSE = (*PYTHON, "contactsense.cli")
+CONTACTSENSE = (*PYTHON, "contactsense")
 STUDY = (*CONTACTSENSE, "study")
 NOISE = ("--noise", "2", "0.1")
 ATLAS_CONTACTS = (
@@ -214,6 +215,16 @@ FIGURES = (
         "docs/memory.md",
         reduce=memory.reduce,
         table=memory.error_table,
+        long=True,
+    ),
+    Figure(
+        "next_motion",
+        "Motions in contact until its point is known: chosen, and at random.",
+        (*STUDY, "next_motion", "--json"),
+        "Twenty trials a link, seed 0.",
+        "docs/next_motion.md",
+        reduce=next_motion.reduce,
+        table=next_motion.motions_table,
         long=True,
     ),
     Figure(

@@ -8,7 +8,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-_CONTACTSENSE = (sys.executable, "-m", "contactsense.cli")
+_CONTACTSENSE = (sys.executable, "-m", "contactsense")
 
 
 def demo(path: Path) -> None:

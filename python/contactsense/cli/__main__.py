@@ -1,5 +1,0 @@
-"""`python -m contactsense.cli`."""
-
-from . import main
-
-main()
