@@ -1,13 +1,16 @@
 //! How far the unknowns may be from what was found: rows of a log do not err independently.
 
+use std::mem::discriminant;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::folds::{mean_square, HeldOut};
+use super::friction::REVERSALS;
 use super::hysteresis::WIDTHS;
-use super::normal::{columns, kept_back, torque, Joints, Normal};
+use super::normal::{columns, kept_back, own_terms, torque, Joints, Normal, Shape};
 use super::rows::Row;
 use super::solve::{transposed_product, Solution};
-use super::unknowns::{Unknowns, HYSTERESIS};
+use super::unknowns::{Unknowns, COULOMB, HYSTERESIS};
 
 /// The longest lag of a correlation, as a part of the rows.
 const LONGEST_LAG: usize = 4;
@@ -18,8 +21,8 @@ const CLUSTERS: usize = 20;
 /// Torque sensors are trimmed to about a per cent (one standard deviation). Masses that follow such an error explain it, so
 /// that no log shows it.
 pub(super) const TORQUE_SCALE: f64 = 0.01;
-/// Hysteresis levels off at another torque than the width found says: half of the way to the next width that was tried is one
-/// standard deviation.
+/// Hysteresis levels off at another torque than the width found says, and friction turns round within another width: half of
+/// the way to the next one that was tried is one standard deviation.
 const HALF_WAY: f64 = 0.5;
 /// As long as a torque changes by less than this part of the rated one, hysteresis passes on the change as if the scale were
 /// smaller by so many shares: a log with such changes alone cannot tell it from lighter bodies. Beyond, it levels off.
@@ -59,7 +62,7 @@ fn correlated_rows(residuals: &[DVector<f64>], joint: usize, square: f64) -> f64
 /// The covariances of the unknowns. Weights assume that errors have nothing to do with the motion; what hysteresis leaves has.
 /// Where the spread of what stretches of the log pull at an unknown, by their held-out residuals, is larger, it counts
 /// instead (cluster-robust covariance: Liang and Zeger 1986). What the scale of a torque may be off by, and hysteresis of a
-/// form that levels off earlier or later, is added as what it would move the unknowns by (consider covariance).
+/// form that levels off earlier or later and friction of one that turns round earlier or later, is added as what it would move the unknowns by (consider covariance).
 /// `rated` is the torque that each joint is built for (Nm; N).
 pub(super) fn covariance(
     unknowns: &Unknowns,
@@ -120,6 +123,15 @@ pub(super) fn covariance(
         let lost = SMALL_CHANGE * share.max(USUAL) * linear.min(1.0).powi(2);
         let by_small_changes = moved(&|row| lost * (torque(row, joint) - mean));
         hidden.ger(1.0, &by_small_changes, &by_small_changes, 1.0);
+        let shape = joints.shapes[joint];
+        let friction = solution.z[unknowns.term(joint, COULOMB)];
+        for other in next_widths(shape.friction) {
+            let share =
+                |row: &Row, friction: usize| own_terms(row, joint, Shape { friction, ..shape })[COULOMB];
+            let by_reversal =
+                moved(&|row| HALF_WAY * friction * (share(row, other) - share(row, shape.friction)));
+            stated.ger(1.0, &by_reversal, &by_reversal, 1.0);
+        }
         let Some(width) = width else { continue };
         let size =
             |width: usize| rows.iter().map(|row| kept_back(row, joint, width).powi(2)).sum::<f64>().sqrt();
@@ -132,6 +144,17 @@ pub(super) fn covariance(
         }
     }
     Some(Uncertainty { elsewhere: &stated + hidden, stated })
+}
+
+/// The ways of turning round alike that are the next narrower and the next wider one.
+fn next_widths(now: usize) -> impl Iterator<Item = usize> {
+    let alike = |k: &usize| discriminant(&REVERSALS[*k]) == discriminant(&REVERSALS[now]);
+    let width = |k: &usize| REVERSALS[*k].width();
+    let [narrower, wider] = [f64::lt, f64::gt].map(|lies: fn(&f64, &f64) -> bool| {
+        (0..REVERSALS.len()).filter(alike).filter(move |k| lies(&width(k), &width(&now)))
+    });
+    let narrower = narrower.max_by(|a, b| width(a).total_cmp(&width(b)));
+    narrower.into_iter().chain(wider.min_by(|a, b| width(a).total_cmp(&width(b))))
 }
 
 /// Mean and standard deviation.
