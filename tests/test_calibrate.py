@@ -141,6 +141,21 @@ def test_a_payload_is_found() -> None:
     assert set(payload.to_dict()) == {"link", "mass", "mass_std", "com", "com_std", "moment"}
 
 
+def test_where_nothing_is_held_the_calibration_does_what_its_residual_says() -> None:
+    # The description holds a tool that is not mounted: a payload would have to weigh less than nothing.
+    described = IIWA.with_payload("iiwa_link_7", 1.0, [0.0, 0.0, 0.1])
+    moved, tau = motion(), torques() + white(0.05)
+    calibration = cs.calibrate(described, log(tau), payload_link="iiwa_link_7")
+    assert calibration.payload is not None
+    assert calibration.payload.mass == 0.0
+    assert calibration.payload.mass_std > 0.0
+    assert any("Nothing is held at iiwa_link_7" in note for note in calibration.notes)
+    step = float(moved.time[1] - moved.time[0])
+    observer = cs.MomentumObserver(described, dt=step, gain=8.0, calibration=calibration)
+    left = [observer.update(*row) for row in zip(moved.q, moved.v, tau, strict=True)]
+    assert (np.sqrt(np.mean(np.square(left), axis=0)) < 2.0 * calibration.residual).all()
+
+
 def test_external_torques_of_a_vendor() -> None:
     bias = np.linspace(-0.6, 0.6, 7)
     external = bias + 0.4 * np.tanh(motion().v / 0.01) + white(0.05)

@@ -233,6 +233,29 @@ def test_evidence_is_low_on_noise_and_high_on_contacts() -> None:
     assert np.percentile(loud, 5) > 10.0
 
 
+def test_a_torque_that_no_push_explains_is_ambiguous() -> None:
+    twist = np.zeros(7)
+    twist[5] = 5.0
+    estimate = usual_map().evaluate([0.3, 0.8, -0.4, 0.9, 0.5, 0.7, 0.0], twist)
+    assert not estimate.explained
+    assert estimate.ambiguous
+
+
+def test_the_force_is_the_one_at_the_point() -> None:
+    precise = cs.ContactMap(arm(), noise=cs.NoiseModel(torque=0.05, model=0, relative=0))
+    found = []
+    for seed in range(30):
+        q, link = arm().random_configuration(seed), f"iiwa_link_{2 + seed % 6}"
+        sample, pose = arm().surface(link).sample(1, seed=seed), arm().link_pose(q, link)
+        point = pose[:3, :3] @ sample.points[0] + pose[:3, 3]
+        tau_ext = arm().jacobian(q, link, point)[:3].T @ (-40.0 * pose[:3, :3] @ sample.normals[0])
+        estimate = precise.evaluate(q, tau_ext)
+        own = arm().jacobian(q, estimate.link, estimate.point)[:3].T @ estimate.force
+        found.append(np.linalg.norm(own - tau_ext) <= 0.15 + 0.1 * np.linalg.norm(tau_ext))
+    # Where the torques determine no force in the usual range, it is a mean.
+    assert np.mean(found) >= 0.9
+
+
 def test_an_evaluation_depends_on_nothing_before_it() -> None:
     torque = reference.draw(arm(), np.random.default_rng(4), shares("iiwa_link_5"), q=Q).torque
     fresh = cs.ContactMap(arm(), samples=500).evaluate(Q, torque)

@@ -43,21 +43,34 @@ pub fn calibrate(robot: &Robot, log: &Log<'_>, options: &CalibrationOptions) -> 
     let v = smooth_velocity(robot, log, velocity_delay, step);
     let smooth = Log { v: &v, ..*log };
     let mut rows = enough_rows(robot, &smooth, &filter)?;
-    let scales = if external {
+    if external {
         rows = rows.into_iter().map(of_external).collect();
-        vec![1.0; robot.nv()]
-    } else {
-        torque_scales(robot, &smooth, options, &rows)
+    }
+    let fit = |options: &CalibrationOptions| {
+        let scales =
+            if external { vec![1.0; robot.nv()] } else { torque_scales(robot, &smooth, options, &rows) };
+        scale::needed(scales, |scales| {
+            let tau = multiplied(log.tau, scales);
+            let rows = rows.iter().map(|row| scaled(row, scales)).collect();
+            Fit::of(robot, &Log { tau: &tau, ..smooth }, options, &filter, velocity_delay, step, rows)
+        })
     };
-    let fit = |scales: &[f64]| {
-        let tau = multiplied(log.tau, scales);
-        let rows = rows.iter().map(|row| scaled(row, scales)).collect();
-        Fit::of(robot, &Log { tau: &tau, ..smooth }, options, &filter, velocity_delay, step, rows)
+    let calibration = |(scales, fit): (Vec<f64>, Fit), options: &CalibrationOptions| {
+        let tau = multiplied(log.tau, &scales);
+        let found = fit.calibration(robot, &Log { tau: &tau, ..*log }, options, step)?;
+        Ok(Calibration { torque_scale: scales, ..found })
     };
-    let (scales, fit) = scale::needed(scales, fit)?;
-    let tau = multiplied(log.tau, &scales);
-    let log = Log { tau: &tau, ..*log };
-    Ok(Calibration { torque_scale: scales, ..fit.calibration(robot, &log, options, step)? })
+    let found = fit(options)?;
+    let Some(nothing) = found.1.nothing_held(robot, options) else { return calibration(found, options) };
+    // What the fit makes of a payload without mass is no payload that a robot could hold: bodies have to explain it.
+    let without = CalibrationOptions { payload_link: None, ..options.clone() };
+    let mut calibration = calibration(fit(&without)?, &without)?;
+    calibration.notes.push(format!(
+        "Nothing is held at {}: the robot is not heavier than its description says. If it is lighter, the description holds a \
+         tool that is not mounted, or too heavy links.",
+        nothing.link
+    ));
+    Ok(Calibration { payload: Some(nothing), ..calibration })
 }
 
 fn enough_rows(robot: &Robot, log: &Log<'_>, filter: &Filter) -> Result<Vec<Row>> {

@@ -98,7 +98,6 @@ impl Fit {
         let term = |term: usize| joints().map(|j| z[unknowns.term(j, term)]).collect::<Vec<f64>>();
         let shapes = &self.joints.shapes;
         let width = |j: usize| shapes[j].hysteresis.map_or(0.0, |k| WIDTHS[k] * self.deviations[j]);
-        let held = unknowns.held_payload(z).zip(options.payload_link);
         Calibration {
             torque_bias: term(BIAS),
             friction: Friction {
@@ -119,18 +118,30 @@ impl Fit {
                 .enumerate()
                 .map(|(k, x)| body_inertia(robot, k, x))
                 .collect(),
-            payload: held.map(|(held, link)| Payload {
-                link: robot[link].name.clone(),
-                mass: held.mass,
-                mass_std: 0.0,
-                com: held.com.into(),
-                com_std: [0.0; 3],
-                moment: held.moment,
-            }),
+            payload: self.held(robot, z, options),
             velocity_delay: self.velocity_delay,
             torque_delay: z[unknowns.torque_delay()],
             ..Calibration::of_description(robot)
         }
+    }
+
+    /// The payload of some values of the unknowns, without its uncertainty.
+    fn held(&self, robot: &Robot, z: &DVector<f64>, options: &CalibrationOptions) -> Option<Payload> {
+        let (held, link) = self.unknowns.held_payload(z).zip(options.payload_link)?;
+        Some(Payload {
+            link: robot[link].name.clone(),
+            mass: held.mass,
+            mass_std: 0.0,
+            com: held.com.into(),
+            com_std: [0.0; 3],
+            moment: held.moment,
+        })
+    }
+
+    /// The payload, with its uncertainty, where one is looked for and there is none.
+    pub fn nothing_held(&self, robot: &Robot, options: &CalibrationOptions) -> Option<Payload> {
+        let held = self.held(robot, &self.solution.z, options).filter(|held| held.mass == 0.0)?;
+        Some(self.with_uncertainty(held))
     }
 
     fn notes(&self, robot: &Robot, log: &Log<'_>, contacts: &[[f64; 2]]) -> Vec<String> {

@@ -215,7 +215,12 @@ impl SurfaceContact {
         let found = self.summary.estimate();
         let (explained, region_radius) = (found.explained, found.region_radius.unwrap_or(f64::INFINITY));
         let several = isolation.contacts.len() > 1;
-        if (several && !explained) || (outdated && !isolation.contacts.is_empty()) {
+        // Where the torques do not speak for the posterior's contact, what detection leaves holds.
+        let detected = !isolation.contacts.is_empty() && !isolation.link_candidates.contains(&place.link);
+        if (several && !explained)
+            || (detected && self.summary.is_doubtful())
+            || (outdated && !isolation.contacts.is_empty())
+        {
             return;
         }
         let point = now.kinematics.link_pose(&self.robot, place.link).transform_point(&place.point);

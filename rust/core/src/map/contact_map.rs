@@ -84,7 +84,8 @@ impl ContactMap {
         self.posterior.forget();
         self.posterior.measure(&self.kinematics, tau_ext, &self.deviation, true);
         while !self.posterior.step() {}
-        Ok(self.summary.read(&self.posterior))
+        self.summary.read(&self.posterior);
+        Ok(self.summary.set_forces_at_points(&self.posterior))
     }
 
     /// What the last evaluation said.

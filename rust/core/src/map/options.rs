@@ -46,7 +46,7 @@ impl Default for MapOptions {
 }
 
 /// A contact's normal force lies between these (N): from what the best torque sensors show to what stops a robot.
-const LEAST_FORCE: f64 = 2.0;
+pub(crate) const LEAST_FORCE: f64 = 2.0;
 pub(crate) const GREATEST_FORCE: f64 = 300.0;
 /// As many samples at most.
 const MOST_SAMPLES: usize = 1_000_000;

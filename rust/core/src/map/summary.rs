@@ -1,6 +1,7 @@
 //! What a posterior over the surface says in short: the contact, its region, and whether the noise explains what is left.
 
 use super::estimate::MapEstimate;
+use super::options::{GREATEST_FORCE, LEAST_FORCE};
 use super::surface_posterior::SurfacePosterior;
 use crate::math::chi_square::upper_limit;
 use crate::posterior::{ContactEstimate, MOST_MODES};
@@ -24,6 +25,7 @@ pub(crate) struct Summary {
     left: Vec<f64>,
     found: MapEstimate,
     point_std: f64,
+    doubtful: bool,
 }
 
 impl Summary {
@@ -34,6 +36,7 @@ impl Summary {
             distances: Vec::with_capacity(posterior.most_pieces()),
             left: vec![0.0; rows],
             point_std: 0.0,
+            doubtful: false,
             found: MapEstimate {
                 estimate: ContactEstimate::new(links, MOST_MODES),
                 region_radius: None,
@@ -54,6 +57,12 @@ impl Summary {
     /// nearly all of the posterior if that is more, since a small share of it may be far away.
     pub fn point_std(&self) -> f64 {
         self.point_std
+    }
+
+    /// Whether the torques do not speak for the contact: they are as likely without one, or a row that the contact's link does not
+    /// move is far beyond its noise.
+    pub fn is_doubtful(&self) -> bool {
+        self.doubtful
     }
 
     /// Reads a posterior that is complete.
@@ -79,6 +88,11 @@ impl Summary {
         }
         found.residual = if misfit.is_finite() { (misfit / rows as f64).sqrt() } else { 0.0 };
         found.explained = misfit <= upper_limit(rows) && largest <= NO_NOISE;
+        // What no single push explains is never sure.
+        found.estimate.ambiguous |= !found.explained;
+        let elsewhere =
+            found.estimate.contact.as_ref().map(|mode| measurement.largest_elsewhere(mode.link.get()));
+        self.doubtful = found.log_evidence < 0.0 || elsewhere.is_some_and(|largest| largest > NO_NOISE);
         found.region_radius = found.estimate.contact.map(|contact| contact.point).map(|point| {
             self.distances.clear();
             for (leaf, weight) in posterior.leaves.iter().zip(&posterior.weights) {
@@ -91,6 +105,26 @@ impl Summary {
             self.point_std = spread.max(nearly_all / 3.0);
             region
         });
+        &self.found
+    }
+}
+
+impl Summary {
+    /// Gives each mode, in place of the mean force over it, the force that explains the torques best at its point; the mean
+    /// stays where that is none of the prior.
+    pub fn set_forces_at_points(&mut self, posterior: &SurfacePosterior) -> &MapEstimate {
+        let (friction, measurement) = (self.friction, posterior.newest());
+        let ContactEstimate { contact, modes, .. } = &mut self.found.estimate;
+        for mode in modes.iter_mut().chain(contact) {
+            let frame = &measurement.frames().links[mode.link.get()];
+            let local = mode.in_link_frame(&frame.pose);
+            let target = measurement.target().on(mode.link.get());
+            let best =
+                BestForce::beside_friction(frame, target, friction, &local.point, &local.pushed_normal());
+            if let Some(best) = best.filter(|best| (LEAST_FORCE..=GREATEST_FORCE).contains(&best.normal)) {
+                mode.force = frame.pose.rotation * best.force;
+            }
+        }
         &self.found
     }
 }
