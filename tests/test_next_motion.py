@@ -160,6 +160,21 @@ def test_wrong_arguments_are_named(arguments, named):
         planned(tracker, estimate, touched.scene.q, **arguments)
 
 
+def test_particles_that_pull_are_left_out():
+    # A spring that holds a link may pull at it.
+    sampler = cs.StaticObstacleSampler(IIWA, particles=500, models="both", seed=1)
+    force = np.array([5.0, -15.0, -10.0])
+    for number in range(8):
+        pose = 0.4 + 0.01 * number * np.array([1, -1, 1, -1, 1, -1, 1])
+        point = IIWA.link_pose(pose, "iiwa_link_6")[:3, 3] + [0.0, 0.05, 0.05]
+        torque = IIWA.jacobian(pose, "iiwa_link_6", point)[:3].T @ (force - [0.0, number, 0.0])
+        estimate = sampler.update(pose, torque)
+    particles = sampler.particles
+    assert (particles.force < 0.0).any()
+    motion = cs.next_motion(IIWA, estimate, pose, max_force=100.0, max_step=0.02, particles=particles)
+    assert motion or motion.reason
+
+
 def test_wrong_objects_are_named():
     touched, tracker, estimate = felt(updates=1)
     with pytest.raises(cs.InputError, match="q"):

@@ -64,7 +64,7 @@ pub struct ContactHypothesis {
     pub point: Vector3<f64>,
     /// Outward.
     pub normal: Vector3<f64>,
-    /// Along the inward normal (N).
+    /// Along the inward normal (N); places that do not push are left out.
     pub force: f64,
     /// Of the contact (N/m).
     pub stiffness: f64,
@@ -129,8 +129,8 @@ impl Believed<'_> {
         if !(point.norm().is_finite() && size > 0.5 && size < 2.0) {
             return Err("the point must be finite and the normal a unit vector");
         }
-        if !(force.is_finite() && *force >= 0.0 && stiffness.is_finite() && *stiffness >= 0.0) {
-            return Err("force and stiffness must be finite and not negative");
+        if !(force.is_finite() && stiffness.is_finite() && *stiffness >= 0.0) {
+            return Err("force and stiffness must be finite, and the stiffness not negative");
         }
         if !(weight.is_finite() && *weight >= 0.0) {
             return Err("the weight must be finite and not negative");
