@@ -1,6 +1,7 @@
 """Locked joints leave the model; their links stay where the joint holds them."""
 
 import math
+from importlib import resources
 
 import numpy as np
 import pinocchio as pin
@@ -8,7 +9,9 @@ import pytest
 from described import describe_urdf
 from urdf_text import ARM, joint, link, robot, write
 
+import contactsense as cs
 from contactsense.errors import InputError
+from contactsense.robot import description_file
 
 
 @pytest.fixture
@@ -56,6 +59,50 @@ def test_all_joints_may_be_locked(arm):
     description = describe_urdf(arm, locked_joints=("shoulder", "elbow", "rail"))
     assert description.joints == []
     assert {link.joint for link in description.links} == {0}
+
+
+def nothing(rows):
+    return np.zeros((rows, 0))
+
+
+SENSOR = cs.ForceTorqueSensor("wrist", "iiwa_link_4")
+
+
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda robot: cs.ContactMonitor(robot, dt=0.01),
+        lambda robot: cs.ContactMonitor(robot, dt=0.01, sensors=[SENSOR]),
+        lambda robot: cs.MomentumObserver(robot, dt=0.01),
+        lambda robot: cs.Calibration.of_description(robot),
+        lambda robot: cs.calibrate(robot, cs.Log(0.01 * np.arange(2000), *[nothing(2000)] * 3)),
+        lambda robot: cs.diagnose(robot, nothing(2000), nothing(2000), nothing(2000)),
+        lambda robot: cs.exciting_motion(robot, 5.0),
+        lambda robot: cs.ContactIsolator(robot),
+        lambda robot: cs.ContactMap(robot),
+        lambda robot: cs.ContactParticleFilter(robot),
+        lambda robot: cs.StaticObstacleSampler(robot),
+        lambda robot: cs.ContactMemory(robot),
+        lambda robot: cs.ContactClassifier(robot, dt=0.01),
+        lambda robot: cs.Reaction(robot, dt=0.01),
+        lambda robot: cs.identify_tool(robot, SENSOR, nothing(5), np.zeros((5, 6))),
+    ],
+)
+def test_what_feels_with_joints_refuses_a_robot_without(use):
+    with resources.as_file(description_file("iiwa14")) as path:
+        names = [f"iiwa_joint_{number}" for number in range(1, 8)]
+        robot = cs.Robot.from_urdf(path, locked_joints=names)
+    assert robot.nv == 0
+    with pytest.raises(cs.InputError, match=r"^robot: .*(no|a) (joint|link) that moves"):
+        use(robot)
+
+
+def test_a_base_that_floats_is_enough_to_feel(arm):
+    robot = cs.Robot.from_urdf(arm, floating_base=True, locked_joints=["shoulder", "elbow", "rail"])
+    monitor = cs.ContactMonitor(robot, dt=0.01)
+    for _ in range(10):
+        report = monitor.update(robot.neutral(), np.zeros(6), [])
+    assert report.collision  # what holds it against gravity
 
 
 def test_position_outside_the_limits_is_warned_of(arm):

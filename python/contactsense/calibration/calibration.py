@@ -31,7 +31,7 @@ class Calibration(_core.Calibration):
             robot: the robot.
 
         Raises:
-            InputError: `robot` is no robot.
+            InputError: `robot` is no robot, or has no joint that moves.
         """
         return cls(_core.Calibration._of_description(robot))
 

@@ -118,7 +118,11 @@ impl PyCalibration {
 
     #[staticmethod]
     fn _of_description(robot: &Bound<'_, PyAny>) -> PyResult<Self> {
-        Ok(Self(Calibration::of_description(&self::robot(robot)?.get().0)))
+        let py = robot.py();
+        let robot = self::robot(robot)?;
+        let robot = &robot.get().0;
+        robot.check_moves().map_err(|error| to_python(py, error))?;
+        Ok(Self(Calibration::of_description(robot)))
     }
 
     /// Name of the robot that it is of.

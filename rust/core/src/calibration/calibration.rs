@@ -176,6 +176,7 @@ impl Default for CalibrationOptions {
 
 impl CalibrationOptions {
     pub(super) fn check(&self, robot: &Robot) -> Result<()> {
+        robot.check_moves()?;
         if !(self.false_alarms_per_hour > 0.0 && self.false_alarms_per_hour.is_finite()) {
             let text = format!("must be positive [1/h], not {}", self.false_alarms_per_hour);
             return Err(Error::input("false_alarms_per_hour", text));
@@ -244,6 +245,7 @@ impl Calibration {
     /// # Errors
     /// [`Error::Input`] says what differs.
     pub fn check(&self, robot: &Robot) -> Result<()> {
+        robot.check_moves()?;
         if self.joints != robot.joint_names() {
             let text = format!("is of '{}', whose joints are {}", self.robot, self.joints.join(", "));
             return Err(Error::input("calibration", text));

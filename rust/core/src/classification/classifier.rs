@@ -83,6 +83,7 @@ impl ContactClassifier {
     /// # Errors
     /// [`crate::Error::Input`] names the option.
     pub fn new(robot: Arc<Robot>, options: &ClassifierOptions) -> Result<Self> {
+        robot.check_moves()?;
         check_time_step(options.dt)?;
         let nv = robot.nv();
         let kept = ((ONSET / options.dt).ceil() as usize).clamp(1, MOST_INSTANTS);

@@ -72,6 +72,7 @@ impl MomentumObserver {
     /// # Errors
     /// [`Error::Input`] where `dt` or a gain is not positive and finite, or their number is wrong.
     pub fn new(robot: Arc<Robot>, dt: f64, gain: &[f64]) -> Result<Self> {
+        robot.check_moves()?;
         check_time_step(dt)?;
         let nv = robot.nv();
         let gain = check_gain(&robot, gain)?;

@@ -99,6 +99,7 @@ impl ContactMemory {
     /// # Errors
     /// [`Error::Input`] names the option.
     pub fn new(robot: Arc<Robot>, options: MemoryOptions) -> Result<Self> {
+        robot.check_moves()?;
         options.check()?;
         Ok(ContactMemory { robot, options, log_odds: HashMap::new() })
     }

@@ -51,6 +51,7 @@ impl Reaction {
     /// # Errors
     /// [`crate::Error::Input`] names the argument.
     pub fn new(robot: Arc<Robot>, dt: f64, limits: ReactionLimits) -> Result<Self> {
+        robot.check_moves()?;
         check_time_step(dt)?;
         let nv = robot.nv();
         limits.check(nv)?;

@@ -48,6 +48,18 @@ impl Robot {
         Ok(())
     }
 
+    /// Checks that a joint or the base moves: else there is no torque, and no place for a force/torque sensor.
+    ///
+    /// # Errors
+    /// [`Error::Input`] names `robot`.
+    pub fn check_moves(&self) -> Result<()> {
+        if self.nv() == 0 {
+            let text = "it has no joint that moves: neither torques nor sensors can tell anything";
+            return Err(Error::input("robot", text));
+        }
+        Ok(())
+    }
+
     /// Checks a velocity or another vector of length `nv`.
     ///
     /// # Errors

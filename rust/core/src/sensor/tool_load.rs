@@ -81,6 +81,7 @@ pub fn identify_tool(
     q: &[f64],
     wrenches: &[Option<[f64; 6]>],
 ) -> Result<ToolLoad> {
+    robot.check_moves()?;
     if robot.gravity.norm() == 0.0 {
         return Err(Error::input("robot", "has no gravity, so that a tool has no weight"));
     }

@@ -170,8 +170,9 @@ impl NoiseModel {
     /// For one robot, by velocity variable.
     ///
     /// # Errors
-    /// [`Error::Input`] names the field.
+    /// [`Error::Input`] names the field, or `robot` where it has no torques.
     pub(crate) fn of(&self, robot: &Robot) -> Result<TorqueNoise> {
+        robot.check_moves()?;
         self.check()?;
         robot.per_velocity("noise.velocity", &self.velocity)?;
         robot.per_velocity("noise.model_time", &self.model_time)?;

@@ -69,9 +69,7 @@ impl<'a> ExcitationPlanner<'a> {
                  balance; give a robot with a fixed base, or one whose base is fixed to a stand",
             ));
         }
-        if robot.nv() == 0 {
-            return Err(Error::input("robot", "it must have a joint that moves"));
-        }
+        robot.check_moves()?;
         let [shortest, longest] = SECONDS;
         if !(shortest..=longest).contains(&wanted.seconds) {
             let text = format!("must be from {shortest} to {longest} [s], not {}", wanted.seconds);

@@ -24,4 +24,12 @@ mod tests {
         assert_eq!(read.to_yaml("a # b", "").unwrap(), text);
         assert_eq!(Calibration::from_yaml(&text).unwrap(), read);
     }
+
+    #[test]
+    fn a_file_has_at_least_one_joint() {
+        let described = Calibration::of_description(&Robot::example_arm());
+        let without = Calibration { joints: vec![], ..described };
+        let error = without.to_yaml("", "").unwrap_err();
+        assert!(error.to_string().contains("joints: a file keeps one entry a joint"), "{error}");
+    }
 }

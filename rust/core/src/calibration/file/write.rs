@@ -40,6 +40,12 @@ impl Calibration {
     /// # Ok::<(), contactsense::Error>(())
     /// ```
     pub fn to_yaml(&self, source: &str, date: &str) -> Result<String> {
+        if self.joints.is_empty() {
+            return Err(Error::input(
+                "calibration",
+                "joints: a file keeps one entry a joint, and there is none",
+            ));
+        }
         let mut file = Text(HEADER.into());
         file.line(0, &format!("format: {FORMAT}"));
         file.line(0, &format!("contactsense: {}", text(env!("CARGO_PKG_VERSION"))));
