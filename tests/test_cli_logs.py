@@ -153,6 +153,37 @@ def test_an_error_is_a_line(
     assert "Traceback" not in told.err
 
 
+def command_on(name: str, log: Path, robot: str = "iiwa14") -> list[str]:
+    return [name, str(log), "--robot", robot]
+
+
+@pytest.mark.parametrize("name", ["replay", "calibrate", "diagnose", "view"])
+def test_a_file_that_cannot_be_read_is_named(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Output that cannot be written has another message and another code."""
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "mine.csv").write_text("time\n0\n")
+    (tmp_path / "robot.urdf").mkdir()
+
+    def refuse(self: Path, *_: object, **__: object) -> None:
+        raise PermissionError(13, "Permission denied", str(self))
+
+    files = [tmp_path / "absent.csv", tmp_path / "empty"]
+    robots = [tmp_path / "absent.urdf", tmp_path / "robot.urdf"]
+    lines = [command_on(name, file) for file in files]
+    lines += [command_on(name, files[0], str(robot)) for robot in robots]
+    lines.append(command_on(name, tmp_path / "mine.csv"))  # last: only then files cannot be opened
+    for arguments, file in zip(lines, [*files, *robots, tmp_path / "mine.csv"], strict=True):
+        if file.name == "mine.csv":
+            monkeypatch.setattr(Path, "open", refuse)
+        assert run(arguments) == 2, arguments
+        told = capsys.readouterr().err
+        assert file.name in told
+        assert "cannot write" not in told
+        assert told.count("\n") == 1, told
+
+
 @pytest.fixture(scope="module")
 def moving(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Half a minute of motion with friction, bias and noise."""

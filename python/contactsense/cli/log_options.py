@@ -148,8 +148,17 @@ class LogOptions:
     def load_log(
         self, path: Path, robot: Robot, sensors: Mapping[ForceTorqueSensor, str | None] | None = None
     ) -> Log:
-        """The log of a file with the readings of sensors; what was chosen is printed on stderr."""
-        log = read_log(path, robot, **self.reading(sensors))
+        """The log of a file with the readings of sensors; what was chosen is printed on stderr.
+
+        Raises:
+            InputError: the file cannot be read; names it.
+        """
+        try:
+            log = read_log(path, robot, **self.reading(sensors))
+        except OSError as cause:
+            # Of several files, as of a bag, the one that it is.
+            file = cause.filename or path
+            raise InputError(f"log: cannot read '{file}': {cause.strerror or cause}") from cause
         print(log.reading, file=sys.stderr)
         return log
 
