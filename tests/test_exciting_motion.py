@@ -201,6 +201,18 @@ def test_speeds_asked_for_are_kept():
     assert np.abs(cs.exciting_motion(robot, 5.0, max_velocity=0.3).v).max() <= 0.3 * (1 + 1e-9)
 
 
+def test_the_limits_of_the_robot_bound_speeds_that_are_asked_for():
+    robot = cs.Robot.named("iiwa14")
+    motion = cs.exciting_motion(robot, 6.0, dt=0.01, max_velocity=100.0)
+    assert (np.abs(motion.v) <= robot.velocity_limits * (1 + 1e-9)).all()
+    assert np.abs(motion.v).max() > 0.5 * robot.velocity_limits.max()
+    assert (np.abs(motion.a) <= 4 * robot.velocity_limits * (1 + 1e-9)).all()
+    wanted = np.array([0.1, *[100.0] * 6])
+    assert np.abs(cs.exciting_motion(robot, 6.0, dt=0.01, max_velocity=wanted).v[:, 0]).max() <= 0.1 * (
+        1 + 1e-9
+    )
+
+
 def test_a_continuous_joint_is_cosine_and_sine():
     robot = cs.Robot.from_urdf(
         example("kinova_description/robots/kinova.urdf"), package_dirs=BY_NAME["kinova"].package_dirs

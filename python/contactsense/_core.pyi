@@ -3137,9 +3137,9 @@ def exciting_motion(
     Args:
         robot: with a fixed base.
         seconds: length, 1 to 600 [s]; 30 to 60 s suit an arm.
-        max_velocity: largest speed of each joint, scalar or `(nv,)` [rad/s; m/s for sliding joints]; by default half of the
-            robot's velocity limits, and 1 rad/s or 0.25 m/s where there are none. A joint comes to its largest speed in 0.25 s
-            or more.
+        max_velocity: largest speed of each joint, scalar or `(nv,)` [rad/s; m/s for sliding joints]; where the robot's own
+            velocity limit is smaller, that one counts. By default half of the robot's velocity limits, and 1 rad/s or
+            0.25 m/s where there are none. A joint comes to its largest speed in 0.25 s or more.
         seed: of the random numbers; the same seed gives the same motion.
         dt: time between rows [s].
         joints: names of the joints that move; the others are held in a pose in which weights load those that move. All by

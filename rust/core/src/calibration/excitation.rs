@@ -37,8 +37,8 @@ use crate::robot::Robot;
 pub struct Excitation {
     /// Length (s).
     pub seconds: f64,
-    /// Largest speed of each joint, or one for all (rad/s; m/s for sliding joints); empty: half of what the
-    /// description allows, 1 rad/s and 0.25 m/s where it says nothing.
+    /// Largest speed of each joint, or one for all (rad/s; m/s for sliding joints), where the description does not
+    /// allow less; empty: half of what it allows, 1 rad/s and 0.25 m/s where it says nothing.
     pub max_velocity: Vec<f64>,
     /// Time between rows (s).
     pub dt: f64,

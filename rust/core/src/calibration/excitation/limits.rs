@@ -86,20 +86,24 @@ impl Limits {
 }
 
 fn velocity(robot: &Robot, wanted: &[f64]) -> Result<Vec<f64>> {
+    let limits = robot.velocity_limits().into_iter();
     if wanted.is_empty() {
         let one = |(limit, kind): (f64, JointKind)| {
             let usual = USUAL_VELOCITY[usize::from(kind == JointKind::Prismatic)];
-            if limit.is_finite() && limit > 0.0 {
-                VELOCITY_SHARE * limit
-            } else {
-                usual
-            }
+            known(limit).map_or(usual, |limit| VELOCITY_SHARE * limit)
         };
-        return Ok(robot.velocity_limits().into_iter().zip(robot.joint_kinds()).map(one).collect());
+        return Ok(limits.zip(robot.joint_kinds()).map(one).collect());
     }
     let velocity = robot.per_velocity("max_velocity", wanted)?;
     if let Some(wrong) = velocity.iter().find(|velocity| **velocity <= 0.0) {
         return Err(Error::input("max_velocity", format!("must be positive [rad/s, m/s], not {wrong}")));
     }
-    Ok(velocity)
+    // What a wish says is no reason to leave what the joint can do.
+    let smaller = |(wanted, limit): (f64, f64)| known(limit).map_or(wanted, |limit| wanted.min(limit));
+    Ok(velocity.into_iter().zip(limits).map(smaller).collect())
+}
+
+/// A velocity limit (rad/s or m/s), where the description has one: zero is written where nobody knew it.
+fn known(limit: f64) -> Option<f64> {
+    (limit.is_finite() && limit > 0.0).then_some(limit)
 }
