@@ -46,6 +46,12 @@ def test_it_crosses_processes() -> None:
         ({"tau": None}, "tau: .*external_torque"),
         ({"wrenches": np.zeros((4, 1, 3))}, "wrenches"),
         ({"q": "no"}, "q: .*array of numbers"),
+        ({"time": None}, "^time: must have 1 dimensions"),
+        ({"time": 1.0}, "^time: must have 1 dimensions"),
+        ({"q": None}, "^q: must have 2 dimensions"),
+        ({"v": None}, "^v: must have 2 dimensions"),
+        ({"time": [0, 1, 2, 10**400]}, "^time: has a number that is too large"),
+        ({"tau": [[10**400] * 7] * 4}, "^tau: has a number that is too large"),
     ],
 )
 def test_what_is_no_log_is_refused(change: dict[str, object], name: str) -> None:

@@ -207,6 +207,8 @@ def test_what_fits_twice_must_be_named(tmp_path: Path, columns: dict[str, np.nda
         ({"topics": ["/nosuch"]}, "topics: there is no /nosuch; there are a"),
         ({"torque_constants": [1.0, 2.0]}, "torque_constants: "),
         ({"torque_constants": 0.0}, "torque_constants: must be finite and not zero"),
+        ({"torque_constants": 10**400}, "^torque_constants: "),
+        ({"torque_constants": [10**400] * 7}, "^torque_constants: "),
     ],
 )
 def test_wrong_arguments_are_named(

@@ -12,6 +12,7 @@ from ..errors import InputError
 from .reading import Reading
 
 _COLUMNS = ("time", "q", "v", "tau", "wrenches", "external_torque")
+_NEEDED = ("time", "q", "v")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -66,7 +67,8 @@ class Log:
         dimensions = {"time": 1, "wrenches": 3}
         rows: int | None = None
         for name, value in given.items():
-            array = None if value is None else _checked(name, value, dimensions.get(name, 2), rows)
+            left_out = value is None and name not in _NEEDED
+            array = None if left_out else _checked(name, value, dimensions.get(name, 2), rows)
             rows = rows if array is None else len(array)
             object.__setattr__(self, name, array)
         object.__setattr__(self, "reading", reading)
@@ -101,9 +103,11 @@ def _restore(*columns: Any) -> Log:
     return Log(time, q, v, tau, wrenches=wrenches, external_torque=external_torque, reading=reading)
 
 
-def _checked(name: str, value: ArrayLike, dimensions: int, rows: int | None) -> NDArray[np.float64]:
+def _checked(name: str, value: ArrayLike | None, dimensions: int, rows: int | None) -> NDArray[np.float64]:
     try:
         array = np.array(value, dtype=np.float64, order="C")
+    except OverflowError:
+        raise InputError(f"{name}: has a number that is too large") from None
     except (TypeError, ValueError):
         raise InputError(f"{name}: must be an array of numbers") from None
     if array.ndim != dimensions:

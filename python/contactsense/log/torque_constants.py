@@ -31,7 +31,7 @@ def check_constants(
         given = [given[name] for name in joints]
     try:
         constants = np.broadcast_to(np.asarray(given, dtype=np.float64), (len(joints),)).copy()
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InputError(f"torque_constants: must be one number or {len(joints)} [Nm/A]") from None
     if not np.all(np.isfinite(constants)) or np.any(constants == 0.0):
         raise InputError("torque_constants: must be finite and not zero [Nm/A]")

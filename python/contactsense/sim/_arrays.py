@@ -16,7 +16,7 @@ def vector(name: str, value: ArrayLike, size: int) -> FloatArray:
     """A fresh finite float64 vector of `size` entries, or `InputError` naming the argument."""
     try:
         array = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise InputError(f"{name} must be {size} numbers") from error
     if array.shape != (size,):
         raise InputError(f"{name} must have shape ({size},), not {array.shape}")
