@@ -196,6 +196,66 @@ def test_files_pickles_and_copies_keep_all(tmp_path):
             cs.ContactMemory.load(tmp_path / name, IIWA)
 
 
+@pytest.mark.parametrize("path", [-1, True, 3, None, b"memory.npz"])
+def test_what_is_no_path_is_refused(path):
+    memory = cs.ContactMemory(IIWA, resolution=0.05)
+    with pytest.raises(cs.InputError, match="path: expected a path"):
+        memory.save(path)
+    with pytest.raises(cs.InputError, match="path: expected a path"):
+        cs.ContactMemory.load(path, IIWA)
+
+
+def test_files_that_cannot_be_written_are_named(tmp_path):
+    memory = cs.ContactMemory(IIWA, resolution=0.05)
+    for path in (tmp_path, tmp_path / "nowhere" / "memory.npz", "memory\0.npz"):
+        with pytest.raises(cs.InputError, match=r"path: .* cannot be written"):
+            memory.save(path)
+
+
+def test_places_that_voxels_do_not_reach_are_refused(tmp_path):
+    memory = cs.ContactMemory(IIWA, resolution=0.05)
+    spread = 1e-4 * np.eye(3)
+    for far in (1.1e8, -1.1e8, 1e9, 1e30):
+        with pytest.raises(cs.InputError, match=r"^contact: .*within 1\.074e8 m"):
+            memory.add_contact(([far, 0.0, 1.0], [1.0, 0.0, 0.0], spread))
+    with pytest.raises(cs.InputError, match=r"^contact: .*standard deviations"):
+        memory.add_contact(([0.5, 0.0, 1.0], [1.0, 0.0, 0.0], 1e16 * np.eye(3)))
+    assert len(memory) == 0
+    memory.add_contact(([1.07e8, 0.0, 1.0], [1.0, 0.0, 0.0], spread))
+    np.testing.assert_allclose(memory.points()[0][0], [1.07e8, 0.0, 1.0], atol=0.1)
+    memory.save(tmp_path / "far.npz")
+    for again in (
+        cs.ContactMemory.load(tmp_path / "far.npz", IIWA),
+        pickle.loads(pickle.dumps(memory)),
+    ):
+        np.testing.assert_array_equal(again.points()[0], memory.points()[0])
+
+
+def test_a_body_that_voxels_do_not_reach_is_refused():
+    atlas = cs.Robot.named("atlas")
+    memory = cs.ContactMemory(atlas, resolution=0.05)
+    q = atlas.neutral()
+    q[1] = 1e9
+    with pytest.raises(cs.InputError, match=r"^q: links must be within"):
+        memory.add_free(q)
+    assert len(memory) == 0
+
+
+@pytest.mark.parametrize(
+    ("covariance", "problem"),
+    [
+        (-1e-4 * np.eye(3), "negative eigenvalue"),
+        (np.diag([1e-4, -1.0, 1e-4]), "negative eigenvalue"),
+        (np.diag([1e-4] * 3) + np.eye(3, k=1), "symmetric"),
+    ],
+)
+def test_what_is_no_covariance_is_refused(covariance, problem):
+    memory = cs.ContactMemory(IIWA, resolution=0.05)
+    with pytest.raises(cs.InputError, match=f"^contact: .*covariance must .*{problem}"):
+        memory.add_contact(([0.5, 0.0, 1.0], [1.0, 0.0, 0.0], covariance))
+    assert len(memory) == 0
+
+
 def test_too_much_is_refused_and_changes_nothing():
     memory = cs.ContactMemory(IIWA, resolution=0.05, max_voxels=20)
     with pytest.raises(cs.InputError, match="max_voxels"):

@@ -3020,7 +3020,8 @@ class ContactMemory:
 
         Args:
             contact: A `ContactEstimate` or `MapEstimate`, a `Contact` of a report, or a tuple `(point, normal, covariance)` of
-                `(3,)` [m], `(3,)` outward, and `(3, 3)` [m^2], world frame. Modes share the evidence by their probabilities.
+                `(3,)` [m], `(3,)` outward, and `(3, 3)` [m^2], symmetric and positive semidefinite, world frame. Voxels reach
+                2^31 `resolution`s from the origin along each axis. Modes share the evidence by their probabilities.
                 An estimate stands for the first of its `contacts`: of several, add each.
 
         Raises:

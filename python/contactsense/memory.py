@@ -9,6 +9,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from ._core import ContactMemory, Robot
+from ._paths import path_of
 from .errors import InputError
 
 _OPTIONS = ("resolution", "prior", "free_error", "contact_error", "max_voxels")
@@ -16,20 +17,21 @@ _OPTIONS = ("resolution", "prior", "free_error", "contact_error", "max_voxels")
 
 def save(memory: ContactMemory, path: str | PathLike[str]) -> None:
     """Writes all that is known as arrays of NumPy."""
+    file = path_of(path)
     indices, log_odds = memory._voxels()
     arrays: dict[str, Any] = _options(memory)
     arrays |= {"indices": indices.astype(np.int32), "log_odds": log_odds}
     try:
-        with open(path, "wb") as file:
-            np.savez_compressed(file, **arrays)
-    except (OSError, TypeError) as cause:
+        with file.open("wb") as opened:
+            np.savez_compressed(opened, **arrays)
+    except (OSError, ValueError) as cause:
         raise InputError(f"path: {path!r} cannot be written ({cause})") from cause
 
 
 def load(path: str | PathLike[str], robot: Robot) -> ContactMemory:
     """The memory that `save` wrote."""
     try:
-        with np.load(path, allow_pickle=False) as arrays:
+        with np.load(path_of(path), allow_pickle=False) as arrays:
             options: dict[str, Any] = {name: arrays[name].item() for name in _OPTIONS}
             indices, log_odds = arrays["indices"], arrays["log_odds"]
     except (OSError, KeyError, TypeError, ValueError, BadZipFile) as cause:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import Any
 
 from .. import _core
+from .._paths import path_of
 from ..errors import InputError
 
 
@@ -48,7 +48,7 @@ class Calibration(_core.Calibration):
             InputError: the file cannot be read, or an entry is missing, unknown or wrong; names the file, the
                 joint and the entry.
         """
-        return cls(_core.Calibration._load(_file(path)))
+        return cls(_core.Calibration._load(path_of(path)))
 
     def save(self, path: str | os.PathLike[str], *, source: str = "") -> None:
         """Writes a YAML file keyed by the names of joints and links, with units, for people to read and edit.
@@ -66,7 +66,7 @@ class Calibration(_core.Calibration):
 
         if not isinstance(source, str):
             raise InputError(f"source: expected a string, got {source!r}")
-        file = _file(path)
+        file = path_of(path)
         text = self._to_yaml(source, date.today().isoformat())
         try:
             file.write_text(text, encoding="utf-8")
@@ -82,13 +82,6 @@ class Calibration(_core.Calibration):
 
     def __deepcopy__(self, memo: Any) -> Calibration:
         return self
-
-
-def _file(path: str | os.PathLike[str]) -> Path:
-    try:
-        return Path(path)
-    except TypeError:
-        raise InputError(f"path: expected a path, got {path!r}") from None
 
 
 def _restore(restore: Any, content: Any) -> Calibration:

@@ -160,7 +160,8 @@ impl PyContactMemory {
     ///
     /// Args:
     ///     contact: A `ContactEstimate` or `MapEstimate`, a `Contact` of a report, or a tuple `(point, normal, covariance)` of
-    ///         `(3,)` [m], `(3,)` outward, and `(3, 3)` [m^2], world frame. Modes share the evidence by their probabilities.
+    ///         `(3,)` [m], `(3,)` outward, and `(3, 3)` [m^2], symmetric and positive semidefinite, world frame. Voxels reach
+    ///         2^31 `resolution`s from the origin along each axis. Modes share the evidence by their probabilities.
     ///         An estimate stands for the first of its `contacts`: of several, add each.
     ///
     /// Raises:
@@ -402,6 +403,6 @@ fn place(
     let covariance = rows::<3>("covariance", covariance)?;
     let covariance: [[f64; 3]; 3] =
         covariance.try_into().map_err(|_| input(py, "covariance: expected shape (3, 3)".into()))?;
-    let covariance = Matrix3::from_fn(|i, k| 0.5 * (covariance[i][k] + covariance[k][i]));
+    let covariance = Matrix3::from_fn(|i, k| covariance[i][k]);
     Ok(PossiblePlace { point: point.into(), normal: normal.into(), covariance, probability: 1.0 })
 }

@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::boxes::{boxes, VoxelBox};
 use super::options::MemoryOptions;
 use super::swept::swept;
-use super::voxel::Voxel;
+use super::voxel::{range, Voxel};
 use crate::error::{Error, Result};
 use crate::math::random::Stream;
 use crate::posterior::Mode;
@@ -63,6 +63,10 @@ const LEAST_DEVIATION: f64 = 2e-3;
 const MOST_LOG_ODDS: f64 = 9.0;
 /// Log-odds of a voxel that is all but sure stay finite.
 const SURE: f64 = 1e-4;
+/// No sample of a normal distribution is further from its mean than so many standard deviations: random numbers have 53 bits.
+const FURTHEST: f64 = 10.0;
+/// How much rounding may take from a covariance its symmetry, or make its eigenvalues negative; relative to its size.
+const ROUNDING: f64 = 1e-9;
 
 /// Where obstacles are and where none are, fused from contacts and from the space that the robot's body has been in.
 ///
@@ -127,7 +131,7 @@ impl ContactMemory {
     pub fn add_free(&mut self, q: &[f64]) -> Result<()> {
         self.robot.check_configuration(q)?;
         let mut inside = vec![];
-        swept(&self.robot, q, self.options.resolution, |voxel| inside.push(voxel));
+        swept(&self.robot, q, self.options.resolution, |voxel| inside.push(voxel))?;
         inside.sort_unstable();
         inside.dedup();
         self.make_room(inside.iter())?;
@@ -175,18 +179,31 @@ impl ContactMemory {
         Ok(())
     }
 
-    fn check(&self, place: &PossiblePlace) -> std::result::Result<(), &'static str> {
+    fn check(&self, place: &PossiblePlace) -> std::result::Result<(), String> {
         let size = place.normal.norm();
         if !(place.point.norm() < LARGEST && size > 0.5 && size < 2.0) {
-            return Err("the point must be finite and the normal a unit vector");
+            return Err("the point must be finite and the normal a unit vector".into());
         }
-        if !(0.0..LARGEST).contains(&place.covariance.norm()) {
-            return Err("the covariance must be finite");
-        }
+        check_covariance(&place.covariance)?;
+        self.check_reach(place)?;
         if !(place.probability >= 0.0 && place.probability < LARGEST) {
-            return Err("the probability must be finite and not negative");
+            return Err("the probability must be finite and not negative".into());
         }
         Ok(())
+    }
+
+    /// Whether there is a voxel for each point of a distribution.
+    fn check_reach(&self, place: &PossiblePlace) -> std::result::Result<(), String> {
+        let resolution = self.options.resolution;
+        let most = range(resolution);
+        let deviation = place.covariance.trace().max(0.0).sqrt().max(LEAST_DEVIATION);
+        if place.point.amax() + resolution + FURTHEST * deviation < most {
+            return Ok(());
+        }
+        Err(format!(
+            "the point and {FURTHEST} standard deviations around it must be within {most:.3e} m of the origin along \
+             each axis, which is how far voxels of {resolution} m reach"
+        ))
     }
 
     /// Adds the probability that the obstacle at a place is in each voxel: half a voxel outward of the surface.
@@ -267,6 +284,20 @@ impl ContactMemory {
     }
 }
 
+fn check_covariance(covariance: &Matrix3<f64>) -> std::result::Result<(), String> {
+    let size = covariance.norm();
+    if !(0.0..LARGEST).contains(&size) {
+        return Err("the covariance must be finite".into());
+    }
+    if (covariance - covariance.transpose()).norm() > ROUNDING * size {
+        return Err("the covariance must be symmetric".into());
+    }
+    if covariance.symmetric_eigenvalues().min() < -ROUNDING * size {
+        return Err("the covariance must have no negative eigenvalue".into());
+    }
+    Ok(())
+}
+
 fn logit(probability: f64) -> f64 {
     (probability / (1.0 - probability)).ln()
 }
@@ -315,5 +346,36 @@ mod tests {
         let error = memory.add_free(&[0.0; 7]).expect_err("too many");
         assert!(matches!(error, Error::Input { argument, .. } if argument == "max_voxels"));
         assert!(memory.is_empty());
+    }
+
+    #[test]
+    fn places_that_voxels_do_not_reach_are_refused() {
+        let mut memory = memory(MemoryOptions::default());
+        let most = range(memory.options().resolution);
+        for far in [1.0001 * most, -1.0001 * most, 1e30] {
+            let error = memory.add_contact(&[place([0.1, far, 0.1], 1.0)]).expect_err("too far");
+            assert!(matches!(error, Error::Input { argument, .. } if argument == "contact"));
+        }
+        let wide = Matrix3::identity() * most.powi(2);
+        let unknown = PossiblePlace { covariance: wide, ..place([0.1; 3], 1.0) };
+        memory.add_contact(&[unknown]).expect_err("too wide");
+        assert!(memory.is_empty());
+        let near = Vector3::new(0.1, 0.9999 * most, 0.1);
+        memory.add_contact(&[place(near.into(), 1.0)]).expect("voxels reach there");
+        assert!(memory.known(&(near + Vector3::x() * 0.01)));
+    }
+
+    #[test]
+    fn a_covariance_may_be_off_by_rounding_only() {
+        let mut memory = memory(MemoryOptions::default());
+        let mut add = |covariance: Matrix3<f64>| {
+            memory.add_contact(&[PossiblePlace { covariance, ..place([0.5, 0.0, 0.5], 1.0) }])
+        };
+        let mut askew = Matrix3::identity() * 1e-4;
+        askew[(0, 1)] = 1e-5;
+        add(askew).expect_err("not symmetric");
+        add(Matrix3::from_diagonal(&Vector3::new(1e-4, -1e-6, 1e-4))).expect_err("a negative variance");
+        add(Matrix3::from_diagonal(&Vector3::new(1e-4, -1e-20, 1e-4))).expect("rounding");
+        add(Matrix3::zeros()).expect("a point that is known");
     }
 }
