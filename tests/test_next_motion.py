@@ -149,6 +149,7 @@ def test_it_can_be_pickled_and_copied():
         ({"count": 20_000}, "count"),
         ({"seed": -1}, "seed"),
         ({"duration": 0.0}, "duration"),
+        ({"duration": 1e-4}, "^duration: must be at least dt, which is 0.001 s"),
         ({"dt": 1e-9}, "dt"),
         ({"particles": "some"}, "particles"),
         ({"noise": 0.1}, "noise"),

@@ -152,7 +152,7 @@ impl PyNextMotion {
 ///         spreads, which are the hypotheses where this is None.
 ///     noise: A `NoiseModel`, the errors of the torques; None for the default of the filter.
 ///     calibration: A `Calibration` of this robot, whose noise takes the place of `noise`.
-///     duration: Length of the motion [s].
+///     duration: Length of the motion, at least `dt` [s].
 ///     dt: Time between its rows [s].
 ///
 /// Returns:

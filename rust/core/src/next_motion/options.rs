@@ -56,6 +56,10 @@ impl NextMotionOptions {
         }
         positive("duration", self.duration, "[s]")?;
         positive("dt", self.dt, "[s]")?;
+        if self.duration < self.dt {
+            let text = format!("must be at least dt, which is {} s, not {}", self.dt, self.duration);
+            return Err(Error::input("duration", text));
+        }
         if self.duration / self.dt > MOST_ROWS {
             return Err(Error::input("dt", format!("gives more than {MOST_ROWS:e} rows, got {}", self.dt)));
         }
