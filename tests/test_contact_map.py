@@ -356,3 +356,12 @@ def test_bad_measurements_leave_the_map_as_it_was(q: Any, torque: Any, name: str
     with pytest.raises(cs.InputError, match=rf"^{name}\b"):
         usual_map().evaluate(q, torque)
     assert same(usual_map().evaluate(Q, np.full(7, 2.0)), before)
+
+
+def test_rounding_makes_no_probability_greater_than_one() -> None:
+    for samples in (300, 500, 700, 1000):
+        contact_map = cs.ContactMap(arm(), samples=samples, links=["iiwa_link_7"])
+        estimate = contact_map.evaluate(np.full(7, 0.4), [1.0, 2.0, 0.5, 1.0, 0.1, 0.2, 0.0])
+        assert estimate.link_probabilities["iiwa_link_7"] == pytest.approx(1.0)
+        assert max(estimate.link_probabilities.values()) <= 1.0
+        assert max(mode.probability for mode in estimate.modes) <= 1.0

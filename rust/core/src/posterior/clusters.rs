@@ -78,9 +78,9 @@ impl Clusters {
         })
     }
 
-    /// Weight of the samples on a link.
+    /// Probability that the contact is on a link: the weight of the samples there.
     pub fn on_link(&self, link: usize) -> f64 {
-        self.links[link].weight
+        probability(self.links[link].weight)
     }
 
     /// Second moment of all samples about a point, world frame [m^2].
@@ -269,7 +269,7 @@ impl Clusters {
             force: pose.rotation * (moments.force / moments.weight),
             normal,
             stiffness: (moments.stiffness > 0.0).then(|| moments.stiffness / moments.weight),
-            probability: moments.weight,
+            probability: probability(moments.weight),
             spread,
         }
     }
@@ -319,6 +319,11 @@ fn link_of(key: u64) -> usize {
 
 fn hash(key: u64) -> usize {
     (mixed(key) >> 24) as usize
+}
+
+/// A sum of weights as a probability: rounding takes those that sum to one a little beyond it.
+fn probability(weight: f64) -> f64 {
+    weight.min(1.0)
 }
 
 fn mixed(key: u64) -> u64 {
