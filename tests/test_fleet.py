@@ -311,11 +311,19 @@ def test_a_damaged_log_gives_its_exit_code(logs: list[Path], tmp_path: Path) -> 
         ({"monitor": {"torque_threshold": -1.0}}, "torque_threshold"),
         ({"classifier": {"prior": [0.5, 0.5]}}, "prior: expected 3"),
         ({"robot": 3}, "robot: expected"),
+        ({"name": 3}, "^name: expected a string, got 3"),
+        ({"workers": "2"}, "^workers: expected a whole number"),
+        ({"reading": 3}, "^reading: expected a mapping"),
+        ({"monitor": [1]}, "^monitor: expected a mapping"),
+        ({"classifier": 3}, "^classifier: expected a mapping"),
+        ({"logs": "pushed.csv"}, "^logs: expected a sequence of paths"),
+        ({"logs": [3]}, "^logs: expected a path"),
+        ({"folder": 3}, "^folder: expected a path"),
     ],
 )
 def test_wrong_arguments_are_named(more: dict[str, Any], message: str, tmp_path: Path) -> None:
     with pytest.raises(cs.InputError, match=message):
-        cs.replay_fleet([], **{"robot": arm(), "folder": tmp_path / "found", **more})
+        cs.replay_fleet(**{"logs": [], "robot": arm(), "folder": tmp_path / "found", **more})
     assert not (tmp_path / "found").exists()
 
 

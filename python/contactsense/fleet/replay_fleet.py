@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from numbers import Integral
 from pathlib import Path
 from typing import Any, Literal, get_args
 
@@ -74,10 +75,13 @@ def replay_fleet(
     from .run import Run
     from .settings import Settings
 
+    _check_types(name, reading=reading, monitor=monitor, classifier=classifier)
     _check(robot, engine, workers, address, monitor, classifier)
+    every = _paths(logs)
+    wanted = _path("folder", folder)
     require("log", "pyarrow")
     settings = Settings(
-        Path(os.path.abspath(folder)),
+        wanted,
         name or robot.name,
         robot,
         reading=reading or {},
@@ -85,7 +89,6 @@ def replay_fleet(
         classifier=classifier,
         ticks=ticks,
     )
-    every = list(dict.fromkeys(Path(os.path.abspath(log)) for log in logs))
     run = Run(settings, every, on_progress)
     interrupted = False
     try:
@@ -93,6 +96,27 @@ def replay_fleet(
     except KeyboardInterrupt:
         interrupted = True
     return run.result(interrupted)
+
+
+def _path(argument: str, path: object) -> Path:
+    if not isinstance(path, str | os.PathLike):
+        raise InputError(f"{argument}: expected a path, got {path!r}")
+    return Path(os.path.abspath(path))
+
+
+def _paths(logs: object) -> list[Path]:
+    """Each log once."""
+    if isinstance(logs, str | os.PathLike) or not isinstance(logs, Iterable):
+        raise InputError(f"logs: expected a sequence of paths, got {logs!r}")
+    return list(dict.fromkeys(_path("logs", log) for log in logs))
+
+
+def _check_types(name: object, **by_name: object) -> None:
+    if name is not None and not isinstance(name, str):
+        raise InputError(f"name: expected a string, got {name!r}")
+    for argument, given in by_name.items():
+        if given is not None and not isinstance(given, Mapping):
+            raise InputError(f"{argument}: expected a mapping, got {type(given).__name__}")
 
 
 def _check(
@@ -107,6 +131,8 @@ def _check(
         raise InputError(f"robot: expected a contactsense.Robot, got {type(robot).__name__}")
     if engine not in ENGINES:
         raise InputError(f"engine: must be {' or '.join(ENGINES)}, not {engine!r}")
+    if workers is not None and (isinstance(workers, bool) or not isinstance(workers, Integral)):
+        raise InputError(f"workers: expected a whole number, got {workers!r}")
     if workers is not None and workers < 1:
         raise InputError(f"workers: must be at least 1, not {workers}")
     if address is not None and engine != "ray":
