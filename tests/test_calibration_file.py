@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -248,11 +249,69 @@ def test_damaged_files_are_refused_or_read(
         assert "arm.yaml" in str(error) or "calibration" in str(error)  # noqa: PT017
 
 
+ATLAS = cs.Robot.named("atlas")
+
+
+def walking(**changes: object) -> cs.Calibration:
+    """Of a robot whose base is free to move, with numbers of its own at every velocity variable."""
+    content = json.loads(cs.Calibration.of_description(ATLAS)._content())
+    random = np.random.default_rng(4)
+    for key in ("torque_bias", "torque_bias_std", "torque_scale", "residual", "hysteresis_width"):
+        content[key] = random.uniform(0.1, 2.0, ATLAS.nv).tolist()
+    content["friction"]["coulomb"] = random.uniform(0.0, 1.0, ATLAS.nv).tolist()
+    content["friction"]["reversal"] = [{"displacement": 0.02}] * 6 + [{"velocity": 0.01}] * (ATLAS.nv - 6)
+    content["armature"] = random.uniform(0.0, 1.0, len(ATLAS.joint_names)).tolist()
+    content["noise"]["torque"] = random.uniform(0.0, 1.0, ATLAS.nv).tolist()
+    return cs.Calibration(json.dumps(content | changes))
+
+
+@pytest.mark.parametrize("calibration", [cs.Calibration.of_description(ATLAS), walking()])
+def test_a_base_that_floats_has_six_numbers(tmp_path: Path, calibration: cs.Calibration) -> None:
+    calibration.save(tmp_path / "atlas.yaml", source="by hand")
+    again = cs.Calibration.load(tmp_path / "atlas.yaml")
+    assert close(calibration.to_dict(), again.to_dict())
+    again.check(ATLAS)
+    again.save(tmp_path / "again.yaml", source="by hand")
+    assert (tmp_path / "again.yaml").read_bytes() == (tmp_path / "atlas.yaml").read_bytes()
+    joints = yaml.safe_load((tmp_path / "atlas.yaml").read_text(encoding="utf-8"))["joints"]
+    base, *others = joints.values()
+    assert len(base["torque_bias"]) == 6
+    assert isinstance(base["armature"], float)
+    assert all(isinstance(joint["torque_bias"], float) for joint in others)
+    monitor = cs.ContactMonitor(ATLAS, dt=0.01, calibration=again)
+    monitor.update(ATLAS.neutral(), np.zeros(ATLAS.nv), np.zeros(ATLAS.nv - 6))
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "message"),
+    [
+        (r"torque_bias: \[.*?, ", "torque_bias: [", "root_joint: torque_bias: must be a list of 6 numbers"),
+        (r"coulomb: \[.*?\]", "coulomb: 0.0", "root_joint: coulomb: must be a list of 6 numbers"),
+        (r"armature: \S+", "armature: [1, 1, 1, 1, 1, 1]", "root_joint: armature: must be a finite number"),
+        (r"root_joint: \[.*?\]", "root_joint: 0.1", "noise: torque: root_joint: must be a list of 6"),
+    ],
+)
+def test_a_wrong_entry_of_a_base_is_named(tmp_path: Path, before: str, after: str, message: str) -> None:
+    path = tmp_path / "atlas.yaml"
+    walking().save(path)
+    text, count = re.subn(before, after, path.read_text(encoding="utf-8"), count=1)
+    assert count == 1
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(cs.InputError, match=message):
+        cs.Calibration.load(path)
+
+
 def test_numbers_that_a_file_cannot_hold(tmp_path: Path) -> None:
-    walking = cs.Calibration.of_description(cs.Robot.named("atlas"))
-    with pytest.raises(cs.InputError, match=r"torque_bias: a file keeps one a joint.*floating base"):
-        walking.save(tmp_path / "atlas.yaml")
-    assert not (tmp_path / "atlas.yaml").exists()
+    reversals = [{"velocity": 0.01 * (k + 1)} for k in range(ATLAS.nv)]
+    friction = {"coulomb": [0.0] * ATLAS.nv, "viscous": [0.0] * ATLAS.nv, "reversal": reversals}
+    for calibration, message in [
+        (full(torque_bias=[0.0] * 5), "torque_bias: a file keeps one a joint, which are 7, not 5"),
+        (walking(residual=[0.0] * 31), "residual: must be 36, one a velocity variable, not 31"),
+        (walking(friction=friction), r"friction\.reversal: a file keeps one for all"),
+    ]:
+        with pytest.raises(cs.InputError, match=message):
+            calibration.save(tmp_path / "arm.yaml")
+        assert not (tmp_path / "arm.yaml").exists()
 
 
 @pytest.mark.parametrize("text", [b"", b"null", b"3", b"\xff\xfe\x00", b"[]", b"\x00", b"a: &a [*a]"])

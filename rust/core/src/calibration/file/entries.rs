@@ -43,6 +43,10 @@ impl<'a> Entries<'a> {
         self.left.iter().any(|(known, node)| *known == name && matches!(node, Node::Mapping(_)))
     }
 
+    pub(super) fn is_list(&self, name: &str) -> bool {
+        self.left.iter().any(|(known, node)| *known == name && matches!(node, Node::List(_)))
+    }
+
     /// Takes an entry where it is null, and says so.
     pub(super) fn take_null(&mut self, name: &str) -> bool {
         let null = |node: &Node| matches!(node, Node::Scalar(it) if matches!(it.value(), Value::Null));

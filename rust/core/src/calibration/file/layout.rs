@@ -75,6 +75,11 @@ pub(super) const JOINT_FIELDS: [Field<Calibration, Vec<f64>>; 13] = [
     field!("residual", "Nm (N), root mean square on held-out blocks", NotNegative, residual),
 ];
 
+/// Of these there is one a joint also of a base that is free to move; of all others there is one a velocity variable.
+pub(super) const ONE_A_JOINT: [&str; 2] = ["armature", "armature_std"];
+/// Velocity variables of a base that is free to move, which is the first joint then: linear, then angular.
+pub(super) const BASE_VARIABLES: usize = 6;
+
 /// The entry `reversal` of a joint stands behind this one.
 pub(super) const BEFORE_REVERSAL: &str = "viscous_std";
 

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::entries::{Entries, Found};
 use super::layout::{
-    nameless, Field, Rule, BEFORE_REVERSAL, DISPLACEMENT, FORMAT, JOINT_FIELDS, MODEL_ERROR, NOISE_FIELDS,
-    ROBOT_FIELDS, VELOCITY,
+    nameless, Field, Rule, BASE_VARIABLES, BEFORE_REVERSAL, DISPLACEMENT, FORMAT, JOINT_FIELDS, MODEL_ERROR,
+    NOISE_FIELDS, ONE_A_JOINT, ROBOT_FIELDS, VELOCITY,
 };
 use super::yaml::parse;
 use crate::calibration::calibration::negative_moments;
@@ -70,7 +70,7 @@ impl Calibration {
             *(field.get_mut)(&mut calibration) = entries.number(field.name, field.unit, field.rule)?;
         }
         calibration.read_joints(entries.inner("joints")?)?;
-        calibration.noise = noise(entries.inner("noise")?, &calibration.joints)?;
+        calibration.noise = noise(entries.inner("noise")?, &calibration)?;
         calibration.bodies = bodies(entries.inner("links")?, &calibration.joints)?;
         calibration.payload = match entries.take_null("payload") {
             true => None,
@@ -99,19 +99,29 @@ impl Calibration {
     }
 
     fn read_joints(&mut self, mut entries: Entries) -> Found<()> {
-        for joint in self.joints.clone() {
-            let mut entry = entries.inner(&joint)?;
+        for (index, joint) in self.joints.clone().iter().enumerate() {
+            let mut entry = entries.inner(joint)?;
+            let is_base = index == 0 && entry.is_list(JOINT_FIELDS[0].name);
             for field in &JOINT_FIELDS {
-                let number = entry.number(field.name, field.unit, field.rule)?;
-                (field.get_mut)(self).push(number);
+                let several = is_base && !ONE_A_JOINT.contains(&field.name);
+                (field.get_mut)(self).extend(one_or_six(&mut entry, field.name, field, several)?);
                 if field.name == BEFORE_REVERSAL {
-                    self.friction.reversal.push(reversal(&mut entry)?);
+                    let count = if is_base { BASE_VARIABLES } else { 1 };
+                    self.friction.reversal.extend(vec![reversal(&mut entry)?; count]);
                 }
             }
             entry.done()?;
         }
         entries.done()
     }
+}
+
+/// What a joint has of a field, or a base that is free to move.
+fn one_or_six<T, V>(entry: &mut Entries, name: &str, field: &Field<T, V>, is_base: bool) -> Found<Vec<f64>> {
+    if is_base {
+        return Ok(entry.numbers::<BASE_VARIABLES>(name, field.unit, field.rule)?.into());
+    }
+    Ok(vec![entry.number(name, field.unit, field.rule)?])
 }
 
 /// Without numbers: whoever adds a field to the core is told here to read it.
@@ -164,18 +174,22 @@ fn reversal(joint: &mut Entries) -> Found<Reversal> {
     Ok(found)
 }
 
-fn noise(mut entries: Entries, joints: &[String]) -> Found<NoiseModel> {
+/// Of a calibration whose joints are read already.
+fn noise(mut entries: Entries, of: &Calibration) -> Found<NoiseModel> {
     let mut noise = NoiseModel::default();
-    for Field { name, unit, rule, get_mut, .. } in &NOISE_FIELDS {
-        *get_mut(&mut noise) = if entries.is_mapping(name) {
-            let mut by_joint = entries.inner(name)?;
-            let numbers =
-                joints.iter().map(|joint| by_joint.number(joint, unit, *rule)).collect::<Found<_>>()?;
+    for field in &NOISE_FIELDS {
+        let mut numbers = vec![];
+        if entries.is_mapping(field.name) {
+            let mut by_joint = entries.inner(field.name)?;
+            for (index, joint) in of.joints.iter().enumerate() {
+                let is_base = index == 0 && of.base_variables() > 1;
+                numbers.extend(one_or_six(&mut by_joint, joint, field, is_base)?);
+            }
             by_joint.done()?;
-            numbers
         } else {
-            vec![entries.number(name, unit, *rule)?]
-        };
+            numbers.push(entries.number(field.name, field.unit, field.rule)?);
+        }
+        *(field.get_mut)(&mut noise) = numbers;
     }
     entries.done()?;
     Ok(noise)

@@ -3,10 +3,10 @@
 use std::fmt::Write;
 
 use super::layout::{
-    nameless, reversal_kind, Field, BEFORE_REVERSAL, FORMAT, JOINT_FIELDS, MODEL_ERROR, NOISE_FIELDS,
-    ROBOT_FIELDS,
+    nameless, reversal_kind, Field, BASE_VARIABLES, BEFORE_REVERSAL, FORMAT, JOINT_FIELDS, MODEL_ERROR,
+    NOISE_FIELDS, ONE_A_JOINT, ROBOT_FIELDS,
 };
-use crate::calibration::{Calibration, Payload};
+use crate::calibration::{Calibration, Payload, Reversal};
 use crate::error::{Error, Result};
 
 /// Of written numbers: more than any of them is known to, and what is read differs by less than 1e-9 of them.
@@ -27,8 +27,8 @@ impl Calibration {
     /// kept in the file only.
     ///
     /// # Errors
-    /// [`Error::Input`] where a number is not finite, or there is not one of each kind for every joint, as with a floating
-    /// base.
+    /// [`Error::Input`] where a number is not finite, or there is not one of each kind for every joint, and six for a base
+    /// that is free to move.
     ///
     /// ```
     /// use contactsense::calibration::Calibration;
@@ -76,12 +76,18 @@ impl Calibration {
     fn write_joints(&self, file: &mut Text) -> Result<()> {
         file.line(0, "joints:");
         for (index, joint) in self.joints.iter().enumerate() {
-            file.line(1, &format!("{}:", text(joint)));
+            let is_base = index == 0 && self.base_variables() > 1;
+            let about = if is_base {
+                "  # free to move: of six numbers, three are linear, three angular"
+            } else {
+                ""
+            };
+            file.line(1, &format!("{}:{about}", text(joint)));
             for Field { name, unit, get, .. } in &JOINT_FIELDS {
-                let values = self.one_a_joint(name, get(self))?;
-                file.line(2, &format!("{name}: {}  # {unit}", number(values[index])?));
+                let values = self.of_joint(name, get(self), index)?;
+                file.line(2, &format!("{name}: {}  # {unit}", number_or_numbers(values)?));
                 if *name == BEFORE_REVERSAL {
-                    let reversal = self.one_a_joint("reversal", &self.friction.reversal)?[index];
+                    let reversal = one_for_all(self.of_joint("reversal", &self.friction.reversal, index)?)?;
                     let (kind, unit) = reversal_kind(reversal);
                     let width = number(reversal.width())?;
                     file.line(2, &format!("reversal: {{{kind}: {width}}}  # {unit}, of coulomb"));
@@ -99,8 +105,9 @@ impl Calibration {
                 continue;
             }
             file.line(1, &format!("{name}:  # {unit}"));
-            for (joint, value) in self.joints.iter().zip(self.one_a_joint(name, get(&self.noise))?) {
-                file.line(2, &format!("{}: {}", text(joint), number(*value)?));
+            for (index, joint) in self.joints.iter().enumerate() {
+                let values = self.of_joint(name, get(&self.noise), index)?;
+                file.line(2, &format!("{}: {}", text(joint), number_or_numbers(values)?));
             }
         }
         Ok(())
@@ -158,15 +165,52 @@ impl Calibration {
         Ok(())
     }
 
+    /// Of the first joint, which may be a base that is free to move.
+    pub(super) fn base_variables(&self) -> usize {
+        let is_free = self.torque_bias.len() + 1 == self.joints.len() + BASE_VARIABLES;
+        if is_free {
+            BASE_VARIABLES
+        } else {
+            1
+        }
+    }
+
+    /// What a joint has of numbers by velocity variable, or by joint.
+    fn of_joint<'a, T>(&self, name: &str, values: &'a [T], index: usize) -> Result<&'a [T]> {
+        if ONE_A_JOINT.contains(&name) {
+            return Ok(&self.one_a_joint(name, values)?[index..=index]);
+        }
+        let base = self.base_variables();
+        if base == 1 {
+            return Ok(&self.one_a_joint(name, values)?[index..=index]);
+        }
+        let wanted = self.joints.len() + base - 1;
+        if values.len() != wanted {
+            let problem = format!("{name}: must be {wanted}, one a velocity variable, not {}", values.len());
+            return Err(Error::input("calibration", problem));
+        }
+        let (of_base, others) = values.split_at(base);
+        Ok(if index == 0 { of_base } else { &others[index - 1..index] })
+    }
+
     fn one_a_joint<'a, T>(&self, name: &str, values: &'a [T]) -> Result<&'a [T]> {
         if values.len() == self.joints.len() {
             return Ok(values);
         }
         let (count, joints) = (values.len(), self.joints.len());
-        let problem = format!(
-            "{name}: a file keeps one a joint, which are {joints}, not {count}; hold a floating base"
-        );
+        let problem = format!("{name}: a file keeps one a joint, which are {joints}, not {count}");
         Err(Error::input("calibration", problem))
+    }
+}
+
+/// How friction of all directions of a joint changes its sign.
+fn one_for_all(reversals: &[Reversal]) -> Result<Reversal> {
+    match reversals {
+        [first, others @ ..] if others.iter().all(|other| other == first) => Ok(*first),
+        _ => Err(Error::input(
+            "calibration",
+            "friction.reversal: a file keeps one for all of a base's directions",
+        )),
     }
 }
 
@@ -231,6 +275,13 @@ fn number(value: f64) -> Result<String> {
         9 => format!("{value:.1}"),
         _ => format!("{}e{}{:02}", whole(mantissa), if exponent < 0 { '-' } else { '+' }, exponent.abs()),
     })
+}
+
+fn number_or_numbers(values: &[f64]) -> Result<String> {
+    match values {
+        [value] => number(*value),
+        _ => numbers(values),
+    }
 }
 
 fn numbers(values: &[f64]) -> Result<String> {
