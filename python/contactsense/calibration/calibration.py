@@ -6,7 +6,6 @@ import os
 from typing import Any
 
 from .. import _core
-from .._paths import path_of
 from ..errors import InputError
 
 
@@ -48,6 +47,8 @@ class Calibration(_core.Calibration):
             InputError: the file cannot be read, or an entry is missing, unknown or wrong; names the file, the
                 joint and the entry.
         """
+        from .._paths import path_of  # few programs need it
+
         return cls(_core.Calibration._load(path_of(path)))
 
     def save(self, path: str | os.PathLike[str], *, source: str = "") -> None:
@@ -63,6 +64,8 @@ class Calibration(_core.Calibration):
             InputError: the file cannot be written, or `source` is no text.
         """
         from datetime import date
+
+        from .._paths import path_of
 
         if not isinstance(source, str):
             raise InputError(f"source: expected a string, got {source!r}")
