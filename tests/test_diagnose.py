@@ -93,6 +93,28 @@ def test_a_few_contacts_do_no_harm(plain):
     assert cs.diagnose(plain.robot, plain.q, plain.v, tau) == ()
 
 
+@pytest.mark.parametrize(("rate", "noise"), [(100, 0.0), (100, 1.0), (500, 1.0)])
+@pytest.mark.parametrize("timed", [True, False])
+@pytest.mark.parametrize("delay", [0.0, 0.02, 0.05])
+def test_a_late_velocity_on_the_recommended_motion(rate, noise, timed, delay):
+    # All joints speed up and slow down together: another clock would explain the delay as well.
+    robot = cs.Robot.named("iiwa14")
+    m = cs.exciting_motion(robot, 15.0, dt=1.0 / rate, seed=1)
+    tau = np.array([robot.inverse_dynamics(*row) for row in zip(m.q, m.v, m.a, strict=True)])
+    rng = np.random.default_rng(0)
+    q, v = (x + noise * sd * rng.standard_normal(x.shape) for x, sd in ((m.q, 1e-5), (m.v, 2e-3)))
+    late = round(delay * rate)
+    rows = len(q) - late
+    found = cs.diagnose(robot, q[late:], v[:rows], tau[late:], time=m.time[late:] if timed else None)
+    if not delay:
+        assert found == ()
+        return
+    (finding,) = found
+    assert (finding.code, finding.severity) == ("delay", "major")
+    assert finding.value == pytest.approx(delay, abs=1e-3)
+    assert "the velocity is" in finding.message
+
+
 def test_rows_in_random_order_say_so_and_still_show_the_sign(plain):
     order = np.random.default_rng(1).permutation(len(plain.time))
     found = cs.diagnose(plain.robot, plain.q[order], plain.v[order], plain.tau[order])

@@ -30,6 +30,8 @@ pub(super) struct Motion {
     pub consecutive: bool,
     /// Whether the time between rows was estimated from positions and velocities.
     pub retimed: bool,
+    /// The time of the rows before that.
+    pub stamps: Vec<f64>,
 }
 
 impl Motion {
@@ -73,6 +75,7 @@ impl Motion {
             nv,
             consecutive: false,
             retimed: false,
+            stamps: vec![],
         };
         let width = tau.len().checked_div(n).unwrap_or(0);
         for (row, out) in tau.chunks_exact(width.max(1)).zip(motion.tau.chunks_exact_mut(nv.max(1))) {
@@ -130,7 +133,8 @@ impl Motion {
     }
 
     /// The step of each row from positions and velocities, where those of the stamps fit badly.
-    fn retime(&mut self) {
+    pub fn retime(&mut self) {
+        self.stamps.clone_from(&self.time);
         let moving = self.moving_joints();
         if moving.len() < 2 || self.len() < 3 {
             return;
@@ -166,6 +170,11 @@ impl Motion {
                 self.time[row + 1] = time;
             }
         }
+    }
+
+    /// The same with the rows at the times of their stamps.
+    pub fn on_its_stamps(&self) -> Motion {
+        Motion { time: self.stamps.clone(), retimed: false, ..self.clone() }
     }
 
     /// The change of a position up to a row, and the mean velocity meanwhile.

@@ -121,6 +121,7 @@ fn thinned(motion: &Motion, every: usize) -> Motion {
     };
     Motion {
         time: take(&motion.time, 1),
+        stamps: take(&motion.stamps, 1),
         q: take(&motion.q, motion.q.len() / motion.len()),
         angle: take(&motion.angle, motion.nv),
         v: take(&motion.v, motion.nv),

@@ -19,12 +19,20 @@ const TIME_CONSTANTS: [f64; 9] = [0.003, 0.006, 0.01, 0.016, 0.024, 0.032, 0.045
 /// What is left unexplained must become less by this share.
 const LEAST_SHARE: f64 = 0.1;
 
+/// At the times of the stamps a lag explains this share of what the velocities miss; if not, the stamps jitter.
+const RATHER_THAN_JITTER: f64 = 0.3;
+
+/// A lag that is at least this share of another one is about the same.
+const AGREES: f64 = 0.75;
+
 /// Delays that are worth a word, and that spoil the detection of contacts (s).
 const WORTH_A_WORD: f64 = 4e-3;
 const SPOILING: f64 = 8e-3;
 
-/// A low-pass rather than a delay must explain so much more.
+/// A low-pass rather than a delay must leave only this share of what the delay leaves, ...
 const RATHER: f64 = 0.965;
+/// ... and this share where stamps may jitter: a low-pass smooths their jitter, a delay does not.
+const RATHER_ON_STAMPS: f64 = 0.25;
 
 /// Halvings of the distance between what is tried: from 10 ms to a tenth of a millisecond.
 const REFINEMENTS: usize = 7;
@@ -41,6 +49,48 @@ enum Lag {
 
 /// Finds a lag of the velocities, and takes it out of them.
 pub(super) fn lag(motion: &mut Motion) -> Option<Finding> {
+    let seen = likeliest(motion, RATHER);
+    let stamped = on_stamps(motion, seen.map(|(lag, _)| lag));
+    let (lag, share) = stamped.as_ref().map(|(_, lag, share)| (*lag, *share)).or(seen)?;
+    let (finding, seconds) = described(lag);
+    if share < LEAST_SHARE || seconds < WORTH_A_WORD {
+        return None;
+    }
+    match stamped {
+        Some((stamped, ..)) => {
+            *motion = stamped;
+            take_out(motion, lag);
+            motion.retime();
+        }
+        None => take_out(motion, lag),
+    }
+    Some(finding.explaining(share).major_if(seconds > SPOILING))
+}
+
+fn take_out(motion: &mut Motion, lag: Lag) {
+    match lag {
+        Lag::Delay(seconds) => motion.v = motion.shifted(&motion.v, seconds),
+        Lag::LowPass { .. } => motion.v = slopes(motion),
+    }
+}
+
+/// A lag that makes the estimate of the time between rows needless, with the motion at the times of the stamps.
+///
+/// Where all joints speed up and slow down together, steps of time that are free make up for any lag. Where they do not,
+/// the lag `seen` with these steps is about the same, and known better.
+fn on_stamps(motion: &Motion, seen: Option<Lag>) -> Option<(Motion, Lag, f64)> {
+    if !motion.retimed {
+        return None;
+    }
+    let stamped = motion.on_its_stamps();
+    let (lag, share) = likeliest(&stamped, RATHER_ON_STAMPS)?;
+    let agree = seen.is_some_and(|seen| lateness(seen) / lateness(lag) > AGREES);
+    (share > RATHER_THAN_JITTER && !agree).then_some((stamped, lag, share))
+}
+
+/// The lag that explains the velocities best, and the share of the misfit that it explains; a low-pass where it leaves
+/// less than `rather` of what a delay leaves.
+fn likeliest(motion: &Motion, rather: f64) -> Option<(Lag, f64)> {
     let plain = misfit(motion, Lag::Delay(0.0))?;
     let delays = COARSE.map(Lag::Delay);
     let (delay, by_delay) = refined(motion, &delays)?;
@@ -49,12 +99,13 @@ pub(super) fn lag(motion: &mut Motion) -> Option<Finding> {
         refined(motion, &tried)
     });
     let (pass, by_pass) = passes.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let (lag, left) = if by_pass < RATHER * by_delay { (pass, by_pass) } else { (delay, by_delay) };
-    let share = 1.0 - left / plain;
-    if share < LEAST_SHARE {
-        return None;
-    }
-    let (finding, seconds) = match lag {
+    let (lag, left) = if by_pass < rather * by_delay { (pass, by_pass) } else { (delay, by_delay) };
+    Some((lag, 1.0 - left / plain))
+}
+
+/// A lag in words, and its time (s).
+fn described(lag: Lag) -> (Finding, f64) {
+    match lag {
         Lag::Delay(seconds) => {
             let text = if seconds > 0.0 {
                 format!("the velocity is {:.0} ms later than the position", 1e3 * seconds)
@@ -70,15 +121,7 @@ pub(super) fn lag(motion: &mut Motion) -> Option<Finding> {
                 format!("the velocity is low-passed at {cutoff:.1} Hz ({order} order), the position is not");
             (Finding::new(FaultCode::Filtered, text).sized(cutoff, "Hz"), time)
         }
-    };
-    if seconds < WORTH_A_WORD {
-        return None;
     }
-    match lag {
-        Lag::Delay(seconds) => motion.v = motion.shifted(&motion.v, seconds),
-        Lag::LowPass { .. } => motion.v = slopes(motion),
-    }
-    Some(finding.explaining(share).major_if(seconds > SPOILING))
 }
 
 /// The best of what is tried, refined between its neighbours, with its misfit.
@@ -105,6 +148,14 @@ fn size(lag: Lag) -> f64 {
     match lag {
         Lag::Delay(seconds) => seconds,
         Lag::LowPass { time, .. } => time,
+    }
+}
+
+/// The mean delay (s).
+fn lateness(lag: Lag) -> f64 {
+    match lag {
+        Lag::Delay(seconds) => seconds,
+        Lag::LowPass { time, damping } => time * damping.map_or(1.0, |damping| 2.0 * damping),
     }
 }
 
@@ -242,6 +293,45 @@ mod tests {
         assert_eq!(found.code, FaultCode::Delay);
         assert!((found.value.unwrap() - 0.025).abs() < 1e-3, "{found}");
         assert_eq!(lag(&mut late), None);
+    }
+
+    /// All joints speed up and slow down together, as when a robot moves from pose to pose.
+    fn together() -> Motion {
+        let (step, rows) = (1e-2, 2000);
+        let (mut time, mut q, mut v) = (vec![], vec![], vec![]);
+        for row in 0..rows {
+            let t = row as f64 * step;
+            // A cycloid in every second, to and fro.
+            let (second, part) = (t.floor(), std::f64::consts::TAU * t.fract());
+            let way = (part - part.sin()) / std::f64::consts::TAU;
+            let forth = if second % 2.0 == 0.0 { 1.0 } else { -1.0 };
+            let along = if forth > 0.0 { way } else { 1.0 - way };
+            let size = |k: usize| 0.3 + 0.1 * k as f64;
+            time.push(t);
+            q.extend((0..7).map(|k| size(k) * along));
+            v.extend((0..7).map(|k| size(k) * forth * (1.0 - part.cos())));
+        }
+        let tau = vec![0.0; v.len()];
+        Motion::new(&Robot::example_arm(), Some(&time), &q, &v, &tau)
+    }
+
+    #[test]
+    fn late_velocities_are_no_jitter_of_stamps() {
+        let on_time = together();
+        assert_eq!(lag(&mut together()), None);
+        for delay in [0.02, 0.05, -0.02] {
+            let mut late = on_time.on_its_stamps();
+            late.v = late.shifted(&late.v, -delay);
+            late.retime();
+            // Free steps of time would explain it just as well.
+            assert!(late.retimed);
+            let found = lag(&mut late).expect("a lag");
+            assert_eq!(found.code, FaultCode::Delay);
+            assert!((found.value.unwrap() - delay).abs() < 1e-3, "{found}");
+            let steps = late.time.windows(2).map(|pair| pair[1] - pair[0]);
+            let worst = steps.map(|step| (step - 1e-2).abs()).fold(0.0, f64::max);
+            assert!(worst < 1e-3, "{worst}");
+        }
     }
 
     #[test]
