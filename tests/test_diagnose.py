@@ -115,6 +115,61 @@ def test_a_late_velocity_on_the_recommended_motion(rate, noise, timed, delay):
     assert "the velocity is" in finding.message
 
 
+def _codes(found):
+    return [(finding.code, finding.severity) for finding in found]
+
+
+@pytest.mark.parametrize("factor", [0.01, 100.0, 1e4, 1e9])
+def test_velocities_out_of_all_proportion_are_named(plain, factor):
+    finding = cs.diagnose(plain.robot, plain.q, factor * plain.v, plain.tau, time=plain.time)[0]
+    assert (finding.code, finding.severity) == ("units", "major")
+    assert finding.value == pytest.approx(factor, rel=0.05)
+
+
+@pytest.mark.parametrize("factor", [100.0, 1e4, 1e6, 1e12])
+def test_velocities_that_leave_no_time_are_named(plain, factor):
+    (finding,) = cs.diagnose(plain.robot, plain.q, factor * plain.v, plain.tau)
+    assert (finding.code, finding.severity) == ("not_judged", "major")
+    assert "other units" in finding.message
+
+
+def test_velocities_that_are_not_those_of_the_positions_are_named(plain):
+    v = np.random.default_rng(0).standard_normal(plain.v.shape)
+    found = cs.diagnose(plain.robot, plain.q, v, plain.tau, time=plain.time)
+    assert ("not_judged", "major") in _codes(found)
+    assert any("velocities do not belong" in finding.message for finding in found)
+
+
+def test_torques_that_have_nothing_to_do_with_the_model_are_named(plain):
+    noise = np.random.default_rng(0).normal(0.0, 1000.0, plain.tau.shape)
+    for tau in (noise, 1e9 * plain.tau, 1e50 * plain.tau):
+        found = cs.diagnose(plain.robot, plain.q, plain.v, tau, time=plain.time)
+        assert any(finding.severity == "major" for finding in found)
+        assert {finding.code for finding in found} <= {"not_judged", "scale"}
+    assert "nothing to do with the model" in found[-1].message
+
+
+@pytest.mark.parametrize("value", [0.0, 3.0])
+def test_missing_torques_are_named(plain, value):
+    (finding,) = cs.diagnose(plain.robot, plain.q, plain.v, np.full_like(plain.tau, value), time=plain.time)
+    assert (finding.code, finding.severity) == ("not_judged", "major")
+    assert "missing" in finding.message
+
+
+@pytest.mark.parametrize("timed", [True, False])
+def test_no_finite_numbers_break_it(plain, timed):
+    rows = slice(0, 200)
+    sizes = (0.0, 1e-300, 1e-9, 1e6, 1e57)
+    for at in range(3):
+        for size in sizes:
+            given = [plain.q[rows], plain.v[rows], plain.tau[rows]]
+            given[at] = given[at] * size
+            found = cs.diagnose(plain.robot, *given, time=plain.time[rows] if timed else None)
+            assert found
+    for step in (1e-300, 1e-12, 1e9, 1e300):
+        cs.diagnose(plain.robot, plain.q[rows], plain.v[rows], plain.tau[rows], time=step * np.arange(200))
+
+
 def test_rows_in_random_order_say_so_and_still_show_the_sign(plain):
     order = np.random.default_rng(1).permutation(len(plain.time))
     found = cs.diagnose(plain.robot, plain.q[order], plain.v[order], plain.tau[order])

@@ -26,6 +26,7 @@ mod terms;
 mod time_step;
 mod torque_delay;
 mod units;
+mod unjudged;
 mod velocity;
 
 pub use finding::{FaultCode, Finding, Severity};
@@ -37,6 +38,9 @@ use motion::Motion;
 
 /// Fewer rows say nothing.
 const LEAST_ROWS: usize = 30;
+
+/// Shorter logs say nothing (s).
+const SHORTEST: f64 = 0.2;
 
 /// What is diagnosed: rows without contact, flat arrays of `n` rows each.
 ///
@@ -104,8 +108,16 @@ pub fn diagnose(robot: &Robot, recording: &Recording<'_>) -> Result<Vec<Finding>
                 ));
                 stamps.iter_mut().flatten().for_each(|time| *time *= unit);
             }
-            None => {}
+            None => {
+                if let Some(finding) = time.and_then(|time| odd_ratio(robot, time, &q, &v)) {
+                    return Ok(vec![finding]);
+                }
+            }
         }
+    }
+    if let Some(finding) = too_short(robot, stamps.as_deref(), &q, &v) {
+        findings.push(finding);
+        return Ok(findings);
     }
     let mut motion = Motion::new(robot, stamps.as_deref(), &q, &v, tau);
     let read = Recording { q: &q, v: &v, ..*recording };
@@ -118,14 +130,7 @@ pub fn diagnose(robot: &Robot, recording: &Recording<'_>) -> Result<Vec<Finding>
     if motion.consecutive {
         findings.extend(velocity::lag(&mut motion));
     } else if !robot.floating_base() {
-        let text = if motion.stands_still() {
-            "the robot does not move: only gravity and constant torques were judged; record ten seconds in which all \
-             joints move"
-        } else {
-            "rows do not follow each other in time, or velocities do not belong to positions: delays and rotor inertias \
-             were not judged, the rest from the slowest rows alone"
-        };
-        findings.push(Finding::new(FaultCode::NotJudged, text.into()));
+        findings.push(not_consecutive(&motion, time.is_some()));
     }
     if robot.floating_base() {
         let what = if motion.consecutive { "torques were" } else { "torques and delays were" };
@@ -133,6 +138,8 @@ pub fn diagnose(robot: &Robot, recording: &Recording<'_>) -> Result<Vec<Finding>
             "{what} not judged: with a floating base the forces of the ground are part of the torques"
         );
         findings.push(Finding::new(FaultCode::NotJudged, text));
+    } else if let Some(finding) = unjudged::missing_torques(robot, &motion) {
+        findings.push(finding);
     } else {
         if let Some((order, finding)) = order::find(robot, &motion) {
             motion = order::reordered(&motion, &order);
@@ -146,10 +153,49 @@ pub fn diagnose(robot: &Robot, recording: &Recording<'_>) -> Result<Vec<Finding>
     Ok(findings)
 }
 
-/// Major before minor, what was not judged last; else in the order found, which is that of the evidence.
+/// Velocities that follow the positions but for a factor that is no unit's.
+fn odd_ratio(robot: &Robot, time: &[f64], q: &[f64], v: &[f64]) -> Option<Finding> {
+    let factor = 1.0 / Motion::odd_ratio(robot, time, q, v)?;
+    let text = format!(
+        "velocities times time are {factor:.4} times the changes of the positions: velocities, positions or time are in \
+         other units than SI, and nothing else was judged"
+    );
+    Some(units::finding(&text, factor))
+}
+
+/// Rows that follow each other within a moment, in which no robot moves.
+fn too_short(robot: &Robot, time: Option<&[f64]>, q: &[f64], v: &[f64]) -> Option<Finding> {
+    let seconds = Motion::seconds(robot, time, q, v).filter(|seconds| *seconds < SHORTEST)?;
+    let known = if time.is_some() {
+        ""
+    } else {
+        ", as positions and velocities tell, which may be in other units than SI"
+    };
+    let text = format!("the log lasts {seconds:.2e} s in all{known}: nothing was judged; record ten seconds");
+    Some(Finding::new(FaultCode::NotJudged, text).major_if(true))
+}
+
+/// Why delays and rotor inertias cannot be judged.
+fn not_consecutive(motion: &Motion, timed: bool) -> Finding {
+    let unmoved = motion.v.iter().all(|v| *v == 0.0);
+    // Without time, or at rest in pose after pose, rows in any order are no mistake.
+    let wrong = timed && !unmoved && !motion.stands_still();
+    let text = if motion.stands_still() {
+        "the robot does not move: only gravity and constant torques were judged; record ten seconds in which all joints move"
+    } else if wrong {
+        "velocities do not belong to positions at these times: delays and rotor inertias were not judged, the rest from the \
+         slowest rows alone"
+    } else {
+        "rows do not follow each other in time, or velocities do not belong to positions: delays and rotor inertias were \
+         not judged, the rest from the slowest rows alone"
+    };
+    Finding::new(FaultCode::NotJudged, text.into()).major_if(wrong)
+}
+
+/// Major before minor, and among equals what was not judged last; else in the order found, which is that of the evidence.
 fn rank(findings: &mut [Finding]) {
     findings
-        .sort_by_key(|finding| (finding.code == FaultCode::NotJudged, finding.severity != Severity::Major));
+        .sort_by_key(|finding| (finding.severity != Severity::Major, finding.code == FaultCode::NotJudged));
 }
 
 fn check(robot: &Robot, time: Option<&[f64]>, q: &[f64], v: &[f64], tau: &[f64], n: usize) -> Result<()> {

@@ -10,6 +10,12 @@ const AVERAGED_STEP: f64 = 5e-3;
 /// Share of the motion of the positions that the velocities explain in consecutive rows.
 const CONSECUTIVE: f64 = 0.8;
 
+/// Velocities times time differ from the changes of positions by at most this factor, or one of them is wrong.
+const LARGEST_RATIO: f64 = 2.0;
+
+/// Averages of fewer rows say nothing of motion.
+const LEAST_AVERAGES: usize = 10;
+
 /// The step of a row is estimated anew where that leaves this share of the misfit: stamps of real logs jitter.
 const JITTERS: f64 = 0.5;
 
@@ -82,7 +88,8 @@ impl Motion {
             spread_torque(row, out);
         }
         let (scale, agreement) = time_scale(nv, &motion.angle, &motion.v, time);
-        motion.consecutive = agreement > CONSECUTIVE && (time.is_some() || scale > 0.0);
+        let fits = if time.is_some() { ratio_fits(scale) } else { scale > 0.0 };
+        motion.consecutive = agreement > CONSECUTIVE && fits && n >= 2;
         motion.time = match time {
             Some(time) => time.to_vec(),
             None => {
@@ -91,10 +98,34 @@ impl Motion {
             }
         };
         if motion.consecutive {
-            motion.average(robot, nq);
+            motion.consecutive = motion.average(robot, nq);
+        }
+        if motion.consecutive {
             motion.retime();
         }
         motion
+    }
+
+    /// Whether every joint's torque is the same in all rows.
+    pub fn torque_is_constant(&self) -> bool {
+        let first = &self.tau[..self.nv.min(self.tau.len())];
+        self.tau.chunks_exact(self.nv.max(1)).all(|row| row == first)
+    }
+
+    /// Seconds in all of rows that follow each other in time.
+    pub fn seconds(robot: &Robot, time: Option<&[f64]>, q: &[f64], v: &[f64]) -> Option<f64> {
+        let n = v.len() / robot.nv().max(1);
+        let (scale, agreement) = time_scale(robot.nv(), &angles(robot, q, n), v, time);
+        let seconds = time.map_or(scale * n as f64, |time| time[n - 1] - time[0]);
+        (agreement > CONSECUTIVE && scale > 0.0).then_some(seconds)
+    }
+
+    /// By how much changes of positions differ from velocities times time, where they follow them but for a factor that no
+    /// log of a robot has.
+    pub fn odd_ratio(robot: &Robot, time: &[f64], q: &[f64], v: &[f64]) -> Option<f64> {
+        let n = v.len() / robot.nv().max(1);
+        let (scale, agreement) = time_scale(robot.nv(), &angles(robot, q, n), v, Some(time));
+        (agreement > CONSECUTIVE && !ratio_fits(scale)).then_some(scale)
     }
 
     /// By how much changes of positions differ from velocities times time.
@@ -107,12 +138,15 @@ impl Motion {
         time_scale(nv, &angles(robot, q, n), v, time).0
     }
 
-    /// Means over so many rows that they are [`AVERAGED_STEP`] apart.
-    fn average(&mut self, robot: &Robot, nq: usize) {
+    /// Means over so many rows that they are [`AVERAGED_STEP`] apart; whether enough are left.
+    fn average(&mut self, robot: &Robot, nq: usize) -> bool {
         let step = self.step();
         let block = ((AVERAGED_STEP / step).round() as usize).max(1);
-        if block == 1 || step.is_nan() || step <= 0.0 {
-            return;
+        if self.len() / block < LEAST_AVERAGES || step.is_nan() || step <= 0.0 {
+            return false;
+        }
+        if block == 1 {
+            return true;
         }
         let mean = |values: &[f64], width: usize| -> Vec<f64> {
             let blocks = values.chunks_exact(width * block);
@@ -130,6 +164,7 @@ impl Motion {
         self.tau = mean(&self.tau, self.nv);
         self.q = mean(&self.q, nq);
         self.q.chunks_exact_mut(nq).for_each(|q| normalise(robot, q));
+        true
     }
 
     /// The step of each row from positions and velocities, where those of the stamps fit badly.
@@ -217,6 +252,11 @@ impl Motion {
         }
         out
     }
+}
+
+/// Whether velocities times time are about the changes of positions.
+fn ratio_fits(scale: f64) -> bool {
+    (1.0 / LARGEST_RATIO..=LARGEST_RATIO).contains(&scale)
 }
 
 /// The joints' positions as numbers without jumps, `(n, nv)`.

@@ -48,6 +48,11 @@ struct Report<'a> {
     gain: f64,
 }
 
+/// A torque relative to one that spoils the detection of contacts.
+pub(super) fn spoils(reference: &Reference, joint: usize, torque: f64) -> f64 {
+    torque / SPOILING_TORQUE.min(SPOILING_SHARE * reference.effort[joint])
+}
+
 /// The findings of one fault; none where it is too small to matter.
 pub(super) fn findings(
     robot: &Robot,
@@ -185,9 +190,8 @@ impl Report<'_> {
         (0..self.evidence.nv).map(one).collect()
     }
 
-    /// A torque relative to one that spoils the detection of contacts.
     fn spoils(&self, joint: usize, torque: f64) -> f64 {
-        torque / SPOILING_TORQUE.min(SPOILING_SHARE * self.reference.effort[joint])
+        spoils(self.reference, joint, torque)
     }
 
     fn load(&self, body: usize) -> Vec<Finding> {

@@ -4,12 +4,13 @@ use nalgebra::DMatrix;
 
 use super::evidence::Evidence;
 use super::finding::Finding;
-use super::fit::Fit;
+use super::fit::{fit, Fit};
 use super::hypothesis::{Explained, Fault, OwnFault, Trial};
 use super::motion::{median, Motion};
 use super::prior::{Prior, Reference};
 use super::report;
 use super::target::Target;
+use super::unjudged;
 use crate::robot::Robot;
 
 /// So many faults are looked for.
@@ -124,6 +125,10 @@ pub(super) fn search(robot: &Robot, motion: &Motion, left_out: &[bool]) -> Vec<F
             evidence = usable(&state, left_out);
         }
     }
+    let reference = Reference::new(&state.robot, &evidence, &poses);
+    let prior = state.prior(&reference);
+    let left = fit(&evidence, &Target::plain(evidence.parts), &prior);
+    findings.extend(unjudged::unexplained_torques(&evidence, &reference, left.as_ref()));
     findings
 }
 
