@@ -8,8 +8,8 @@ from functools import lru_cache
 from contactsense import InputError, Robot
 from contactsense.sim.deepest import moving_links
 
+from ..arm_options import ArmOptions
 from ..example_robots import robot_of
-from .options import Options
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class Arm:
     links: tuple[str, ...]
 
 
-def load_arm(options: Options) -> Arm:
+def load_arm(options: ArmOptions) -> Arm:
     """Loads the robot, once a process.
 
     Raises:

@@ -9,21 +9,15 @@ from typer import Option
 
 from contactsense import InputError
 
+from ..arm_options import ArmOptions
 from ..harness import check_counts
 from .experiments import BY_NAME, Experiment
 
 
 @dataclass(frozen=True)
-class Options:
+class Options(ArmOptions):
     """Counts, seed, and the robot."""
 
-    robot: Annotated[str, Option(help="A packaged arm, or a URDF file.")] = "iiwa14"
-    package_dirs: Annotated[
-        tuple[str, ...], Option("--package-dir", help="Folder for `package://` names; may be repeated.")
-    ] = ()
-    links: Annotated[
-        tuple[str, ...], Option("--link", help="Link in contact; may be repeated (default: all that move).")
-    ] = ()
     experiments: Annotated[
         tuple[str, ...],
         Option("--experiment", help=f"One of {', '.join(BY_NAME)}; may be repeated (default: all)."),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 from contactsense import Calibration, ContactMap, ContactParticleFilter, Robot, StaticObstacleSampler
 from contactsense.sim import ContactRun, TorqueNoise
@@ -28,19 +28,14 @@ class Locator:
     particles: Callable[[], Any] = _no_particles  # after the last update
 
 
-class Make(Protocol):
-    """Makes a locator."""
+@dataclass(frozen=True)
+class Setting:
+    """What a locator is told."""
 
-    def __call__(
-        self,
-        robot: Robot,
-        *,
-        particles: int,
-        seed: int,
-        friction: float = 0.0,
-        calibration: Calibration | None = None,
-    ) -> Locator:
-        """Of a contact with a coefficient of friction, by torques with the noise of a calibration."""
+    particles: int
+    seed: int
+    friction: float = 0.0
+    calibration: Calibration | None = None
 
 
 @dataclass(frozen=True)
@@ -48,7 +43,7 @@ class Method:
     """A way to locate a contact, and each how many samples of a run it is fed."""
 
     name: str
-    make: Make
+    make: Callable[[Robot, Setting], Locator]
     every: int = 1
 
 
@@ -60,32 +55,24 @@ class Found:
     near: bool  # a probable place is near the true one
 
 
-def _of_particles(kind: Any) -> Make:
-    def make(
-        robot: Robot,
-        *,
-        particles: int,
-        seed: int,
-        friction: float = 0.0,
-        calibration: Calibration | None = None,
-    ) -> Locator:
-        rubbing = {"measurement": "friction_cone", "friction": friction} if friction > 0.0 else {}
-        locator = kind(robot, particles=particles, seed=seed, calibration=calibration, **rubbing)
+def _of_particles(kind: Any) -> Callable[[Robot, Setting], Locator]:
+    def make(robot: Robot, setting: Setting) -> Locator:
+        rubbing = _rubbing(setting)
+        if rubbing:
+            rubbing["measurement"] = "friction_cone"
+        common = {"particles": setting.particles, "seed": setting.seed, "calibration": setting.calibration}
+        locator = kind(robot, **common, **rubbing)
         return Locator(locator.update, lambda: locator.particles)
 
     return make
 
 
-def _map(
-    robot: Robot,
-    *,
-    particles: int,
-    seed: int,
-    friction: float = 0.0,
-    calibration: Calibration | None = None,
-) -> Locator:
-    rubbing: dict[str, Any] = {"friction": friction} if friction > 0.0 else {}
-    return Locator(ContactMap(robot, **rubbing, calibration=calibration).evaluate)
+def _map(robot: Robot, setting: Setting) -> Locator:
+    return Locator(ContactMap(robot, calibration=setting.calibration, **_rubbing(setting)).evaluate)
+
+
+def _rubbing(setting: Setting) -> dict[str, Any]:
+    return {"friction": setting.friction} if setting.friction > 0.0 else {}
 
 
 METHODS = (
@@ -104,13 +91,8 @@ def locate(
     calibration: Calibration | None = None,
 ) -> Found:
     """Feeds the run to the end, with noise of so many per cent; the seed of `options` is the trial's."""
-    locator = method.make(
-        robot,
-        particles=options.particles,
-        seed=options.seed,
-        friction=options.friction,
-        calibration=calibration,
-    )
+    setting = Setting(options.particles, options.seed, options.friction, calibration)
+    locator = method.make(robot, setting)
     torques = TorqueNoise(percent=noise, seed=options.seed)
     for row, (q, torque) in enumerate(zip(run.q, run.external_torque, strict=True)):
         measured = torques.measure(torque)

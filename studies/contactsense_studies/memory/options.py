@@ -9,21 +9,14 @@ from typer import Option
 
 from contactsense import InputError
 
-from ..bimbo2019.options import Options as Runs
+from ..arm_options import ArmOptions
 from ..harness import check_counts
 
 
 @dataclass(frozen=True)
-class Options:
+class Options(ArmOptions):
     """Counts, seed, and the robot."""
 
-    robot: Annotated[str, Option(help="A packaged arm, or a URDF file.")] = "iiwa14"
-    package_dirs: Annotated[
-        tuple[str, ...], Option("--package-dir", help="Folder for `package://` names; may be repeated.")
-    ] = ()
-    links: Annotated[
-        tuple[str, ...], Option("--link", help="Link in contact; may be repeated (default: all that move).")
-    ] = ()
     trials: Annotated[int, Option(help="Number of trials per link.")] = 20
     particles: Annotated[int, Option(help="Number of particles of filter and sampler.")] = 10_000
     friction: Annotated[float, Option(help="Coefficient of friction, which all are told.")] = 0.0
@@ -44,7 +37,3 @@ class Options:
     def title(self, noise: float) -> str:
         """What the torques err by, in words."""
         return "Errors of a real arm, calibrated" if self.imperfect else f"Noise of {noise:g} %"
-
-    def runs(self) -> Runs:
-        """Options of the recorded runs."""
-        return Runs(robot=self.robot, package_dirs=self.package_dirs, links=self.links)

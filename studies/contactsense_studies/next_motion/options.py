@@ -9,23 +9,16 @@ from typer import Option
 
 from contactsense import InputError
 
-from ..bimbo2019.options import Options as Runs
+from ..arm_options import ArmOptions
 from ..harness import check_counts
 
 NAMES = ("map", "filter", "sampler")
 
 
 @dataclass(frozen=True)
-class Options:
+class Options(ArmOptions):
     """Counts, bounds, seed, and the robot."""
 
-    robot: Annotated[str, Option(help="A packaged arm, or a URDF file.")] = "iiwa14"
-    package_dirs: Annotated[
-        tuple[str, ...], Option("--package-dir", help="Folder for `package://` names; may be repeated.")
-    ] = ()
-    links: Annotated[
-        tuple[str, ...], Option("--link", help="Link in contact; may be repeated (default: all that move).")
-    ] = ()
     methods: Annotated[
         tuple[str, ...], Option("--method", help="map, filter or sampler; may be repeated (default: all).")
     ] = NAMES
@@ -44,7 +37,3 @@ class Options:
         for name, value in (("max_force", self.max_force), ("max_step", self.max_step)):
             if not value > 0.0:
                 raise InputError(f"{name} must be positive, got {value}")
-
-    def runs(self) -> Runs:
-        """Options that name the robot and its links."""
-        return Runs(robot=self.robot, package_dirs=self.package_dirs, links=self.links)

@@ -61,7 +61,7 @@ def run(options: Options | None = None, *, processes: int | None = None, progres
         ModelError, GeometryError: the robot cannot be used.
     """
     options = options or Options()
-    arm = load_arm(options.runs())
+    arm = load_arm(options)
     items = [(options, link, number) for number in range(options.trials) for link in arm.links]
     trials, complete = run_trials(_trial, items, "trials", processes, progress)
     return Study(options, arm.links, trials, complete)
@@ -69,7 +69,7 @@ def run(options: Options | None = None, *, processes: int | None = None, progres
 
 def _trial(item: Item) -> Trial:
     options, link, number = item
-    arm = load_arm(options.runs())
+    arm = load_arm(options)
     of_link = [options.seed, number, arm.robot.link_names.index(link)]
     for chance in np.random.SeedSequence(of_link).generate_state(SCENES).tolist():
         try:

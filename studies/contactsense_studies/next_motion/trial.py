@@ -15,7 +15,7 @@ from contactsense import Robot, next_motion
 from contactsense.sim._arrays import FloatArray
 
 from ..bimbo2019.score import point_error
-from ..memory.methods import Locator, Method
+from ..memory.methods import Locator, Method, Setting
 from .options import Options
 from .touched import Touched, on_the_way, random_step
 
@@ -51,7 +51,7 @@ def locate(robot: Robot, link: str, method: Method, way: Way, options: Options, 
         InputError: the link cannot be touched so.
     """
     touched = Touched(robot, link, seed)
-    locator = method.make(robot, particles=options.particles, seed=seed)
+    locator = method.make(robot, Setting(options.particles, seed))
     rng = np.random.default_rng(seed)
     q, point = touched.scene.q, touched.scene.point
     greatest = float(np.linalg.norm(touched.scene.force))
