@@ -11,7 +11,8 @@ pytest.importorskip("mujoco", reason="the simulation needs MuJoCo: pip install c
 
 import contactsense as cs
 from contactsense import sim
-from contactsense_studies.harness import plain, save_pictures
+from contactsense._plain import plain
+from contactsense_studies.harness import save_pictures
 from contactsense_studies.recovery import study as whole
 from contactsense_studies.recovery.data import as_data
 from contactsense_studies.recovery.options import Options

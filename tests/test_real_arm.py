@@ -167,7 +167,7 @@ def test_the_number_of_processes_changes_nothing(short: Study) -> None:
 
 
 def plain(result: Study) -> Any:
-    from contactsense_studies.harness import plain as as_plain
+    from contactsense._plain import plain as as_plain
 
     return as_plain(as_data(result))
 

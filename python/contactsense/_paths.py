@@ -8,8 +8,8 @@ from pathlib import Path
 from .errors import InputError
 
 
-def path_of(path: str | os.PathLike[str]) -> Path:
-    """The argument `path`; no number, which `open` takes for a file that the process has open already.
+def path_of(path: str | os.PathLike[str], argument: str = "path") -> Path:
+    """A path that was given as an argument; no number, which `open` takes for a file that is open already.
 
     Raises:
         InputError: it is no path.
@@ -17,4 +17,4 @@ def path_of(path: str | os.PathLike[str]) -> Path:
     try:
         return Path(path)
     except TypeError:
-        raise InputError(f"path: expected a path, got {path!r}") from None
+        raise InputError(f"{argument}: expected a path, got {path!r}") from None

@@ -23,6 +23,7 @@ from rich.table import Table
 from contactsense import InputError
 from contactsense._extras import MissingExtraError, require
 from contactsense._pictures import picture_folder, save_picture
+from contactsense._plain import plain
 
 # Stage, how much of it is done, and all of it.
 Report: TypeAlias = Callable[[str, int, int], None]
@@ -149,19 +150,6 @@ def progress_bars() -> Iterator[Report]:
 def print_json(data: Any) -> None:
     """Results as JSON; null where a figure is undefined or infinite."""
     print(json.dumps(plain(data), indent=2, allow_nan=False))
-
-
-def plain(value: Any) -> Any:
-    """Dictionaries, lists and numbers; a number that is not finite becomes None."""
-    if isinstance(value, dict):
-        return {key: plain(entry) for key, entry in value.items()}
-    if isinstance(value, list | tuple):
-        return [plain(entry) for entry in value]
-    if isinstance(value, np.ndarray):
-        return plain(value.tolist())
-    if isinstance(value, float):
-        return float(value) if math.isfinite(value) else None
-    return value
 
 
 def sheet(title: str, labels: tuple[str, ...], figures: tuple[str, ...], caption: str | None = None) -> Table:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import json
-import math
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from .. import diagnose
 from .._extras import require
 from .._pictures import optional_picture
+from .._plain import plain
 from ..errors import InputError
 from ..offline.residuals import residuals
 from .log_options import LogOptions
@@ -44,8 +44,7 @@ def command(
 
         save_diagnosis_picture(png, measured, loaded, residuals(loaded, measured))
     if as_json:
-        told = [_without_nan(finding.to_dict()) for finding in findings]
-        print(json.dumps(told, indent=2, allow_nan=False))
+        print(json.dumps(plain([finding.to_dict() for finding in findings]), indent=2, allow_nan=False))
         return
     from rich.console import Console
     from rich.text import Text
@@ -56,12 +55,3 @@ def command(
     for number, finding in enumerate(findings, start=1):
         console.print(Text(f"{number}. {finding.severity}, {finding.code}: {finding.message}"))
         console.print(Text(f"   explains {finding.evidence:.0%} of what was unexplained until then"))
-
-
-def _without_nan(value: Any) -> Any:
-    """The same with None in place of numbers that are not finite: JSON has none of them."""
-    if isinstance(value, dict):
-        return {key: _without_nan(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_without_nan(item) for item in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value

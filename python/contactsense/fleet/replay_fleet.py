@@ -98,10 +98,10 @@ def replay_fleet(
     return run.result(interrupted)
 
 
-def _path(argument: str, path: object) -> Path:
-    if not isinstance(path, str | os.PathLike):
-        raise InputError(f"{argument}: expected a path, got {path!r}")
-    return Path(os.path.abspath(path))
+def _path(argument: str, path: Any) -> Path:
+    from .._paths import path_of  # few programs need it
+
+    return Path(os.path.abspath(path_of(path, argument)))
 
 
 def _paths(logs: object) -> list[Path]:

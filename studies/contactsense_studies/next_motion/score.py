@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..harness import mean
+from ..harness import mean, median
 from .trial import Outcome
 
 
@@ -27,7 +27,7 @@ def score(outcomes: Sequence[Outcome]) -> Score:
     lengths = [np.inf if each.motions is None else float(each.motions) for each in outcomes]
     return Score(
         trials=len(outcomes),
-        motions=_median(lengths),
+        motions=median(lengths),
         never=mean([np.isinf(length) for length in lengths]),
         lost=mean([each.lost for each in outcomes]),
         greatest_force=max((each.greatest_force for each in outcomes), default=np.nan),
@@ -37,14 +37,6 @@ def score(outcomes: Sequence[Outcome]) -> Score:
 def errors_after(outcomes: Sequence[Outcome], motions: int) -> list[float]:
     """The median error of the point after 0, 1, ... motions [m]; a trial that is over keeps its last one."""
     return [
-        _median([each.errors[min(number, len(each.errors) - 1)] for each in outcomes])
+        median([each.errors[min(number, len(each.errors) - 1)] for each in outcomes])
         for number in range(motions + 1)
     ]
-
-
-def _median(values: Sequence[float]) -> float:
-    """The mean of the two in the middle, which may be infinite; NaN of none."""
-    ordered, half = sorted(values), len(values) // 2
-    if not ordered:
-        return np.nan
-    return ordered[half] if len(ordered) % 2 else 0.5 * (ordered[half - 1] + ordered[half])
