@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::judged::Judged;
 use super::log::Log;
-use crate::detection::LARGEST_STEP;
+use crate::detection::{Standstill, LARGEST_STEP};
 use crate::error::Result;
 use crate::observer::{ObserverBank, Step};
 use crate::robot::Robot;
@@ -26,6 +26,8 @@ pub(super) const RELATIVE: f64 = 0.05;
 const STEPS: usize = 100;
 /// Noise of a velocity that was low-passed at 60 Hz is so many times its first differences at 1 kHz.
 const MOST_VELOCITY: f64 = 2.0;
+/// A joint stands where its velocity is below this share of its noise.
+const STANDING: f64 = 0.1;
 /// Times over which slow errors may change (s): from friction that turns round to a bias.
 const TIMES: [f64; 8] = [0.005, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 10.0];
 const ROUNDS: usize = 3;
@@ -36,12 +38,27 @@ const ORDERS: std::ops::RangeInclusive<usize> = 2..=6;
 
 /// White noise per sample under a smooth motion, of rows at these times with a usual step (s).
 pub(super) fn white(value: impl Fn(usize) -> f64, time: &[f64], step: f64) -> f64 {
-    ORDERS.map(|order| differences(&value, time, step, order)).fold(f64::INFINITY, f64::min)
+    ORDERS.map(|order| differences(&value, |_| true, time, step, order)).fold(f64::INFINITY, f64::min)
 }
 
-/// The root mean square of differences of one order, as a share of what they make of white noise. Those over a gap in time say
-/// nothing of it.
-fn differences(value: &impl Fn(usize) -> f64, time: &[f64], step: f64, order: usize) -> f64 {
+/// The same of a velocity, and its first differences: low-passed noise is not white, and they hold nearly all of it, and all of
+/// the motion. Where a joint stands, its encoder counts the same position again and again, which says nothing of the noise.
+fn white_velocity(speed: impl Fn(usize) -> f64, time: &[f64], step: f64) -> [f64; 2] {
+    let all = white(&speed, time, step);
+    let of_order = |order| differences(&speed, |row| speed(row).abs() >= STANDING * all, time, step, order);
+    let moving = ORDERS.map(of_order).fold(f64::INFINITY, f64::min);
+    [moving.max(all), MOST_VELOCITY * of_order(1)]
+}
+
+/// The root mean square of differences of one order, as a share of what they make of white noise, over rows that count. Those over
+/// a gap in time say nothing of it.
+fn differences(
+    value: &impl Fn(usize) -> f64,
+    counts: impl Fn(usize) -> bool,
+    time: &[f64],
+    step: f64,
+    order: usize,
+) -> f64 {
     let count = time.len();
     if count < 10 * order {
         return 0.0;
@@ -55,7 +72,7 @@ fn differences(value: &impl Fn(usize) -> f64, time: &[f64], step: f64, order: us
         growth *= 2.0 * (2 * n - 1) as f64 / n as f64;
     }
     let longest = super::LONGEST_STEPS * step;
-    let whole = |k: &usize| time[k + order] - time[*k] <= longest;
+    let whole = |k: &usize| time[k + order] - time[*k] <= longest && (*k..=k + order).all(&counts);
     let mut squares: Vec<f64> = (0..column.len()).filter(whole).map(|k| column[k] * column[k]).collect();
     if squares.is_empty() {
         return 0.0;
@@ -73,6 +90,8 @@ struct Spread {
     squares: Vec<DVector<f64>>,
     /// Mean squares of the mass matrix's entries.
     mass: DMatrix<f64>,
+    /// By gain: the mean share of the velocities' noise that the motion allowed.
+    moving: Vec<f64>,
 }
 
 /// The noise model that the parts of a log show; `skipped` says which rows have a contact.
@@ -85,13 +104,11 @@ pub(super) fn estimate(
 ) -> Result<NoiseModel> {
     let nv = robot.nv();
     let torque: Vec<f64> = (0..nv).map(|j| white(|k| log.tau_of(k)[j], log.time, step)).collect();
-    let velocity = (0..nv).map(|j| {
-        let speed = |k: usize| log.v_of(robot, k)[j];
-        // Low-passed noise is not white: first differences hold nearly all of it, and all of the motion.
-        [white(speed, log.time, step), MOST_VELOCITY * differences(&speed, log.time, step, 1)]
-    });
-    let spread = spread(robot, log, parts, skipped, step)?;
-    Ok(split(&spread, torque, &velocity.collect::<Vec<_>>(), step))
+    let velocity: Vec<[f64; 2]> =
+        (0..nv).map(|j| white_velocity(|k| log.v_of(robot, k)[j], log.time, step)).collect();
+    let least: Vec<f64> = velocity.iter().map(|[least, _]| *least).collect();
+    let spread = spread(robot, log, parts, skipped, step, Standstill::new(&least))?;
+    Ok(split(&spread, torque, &velocity, step))
 }
 
 fn spread(
@@ -100,6 +117,7 @@ fn spread(
     parts: &[Judged],
     skipped: &[bool],
     step: f64,
+    mut standstill: Standstill,
 ) -> Result<Spread> {
     let nv = robot.nv();
     let mut gains: Vec<f64> = GAINS.into_iter().filter(|gain| gain * step <= LARGEST_STEP).collect();
@@ -107,7 +125,7 @@ fn spread(
         gains.push(LARGEST_STEP / step);
     }
     let mut squares = vec![DVector::zeros(nv); gains.len()];
-    let mut counts = vec![0.0; gains.len()];
+    let (mut counts, mut moving) = (vec![0.0; gains.len()], vec![0.0; gains.len()]);
     let (mut mass, mut poses) = (DMatrix::zeros(nv, nv), 0.0);
     for part in parts {
         let mut bank = ObserverBank::new(nv, step, &gains);
@@ -115,13 +133,16 @@ fn spread(
         part.each_row(robot, log, skipped, step, |row| {
             if row.starts {
                 bank.reset();
+                standstill.reset();
                 since = 0.0;
             }
             bank.advance(row.unexplained, Step::Of(row.dt));
+            let share = standstill.advance(row.velocity, row.dt);
             since += row.dt;
             for (which, (gain, external)) in gains.iter().zip(bank.torques()).enumerate() {
                 if since > SETTLED / gain {
                     squares[which].iter_mut().zip(external).for_each(|(sum, r)| *sum += r * r);
+                    moving[which] += share;
                     counts[which] += 1.0;
                 }
             }
@@ -137,11 +158,13 @@ fn spread(
     for (sum, count) in squares.iter_mut().zip(&counts) {
         *sum /= f64::max(*count, 1.0);
     }
+    moving.iter_mut().zip(&counts).for_each(|(moving, count)| *moving /= f64::max(*count, 1.0));
     let known: Vec<usize> = (0..gains.len()).filter(|k| counts[*k] > 0.0).collect();
     Ok(Spread {
         gains: known.iter().map(|k| gains[*k]).collect(),
         squares: known.iter().map(|k| squares[*k].clone()).collect(),
         mass: mass / f64::max(poses, 1.0),
+        moving: known.iter().map(|k| moving[*k]).collect(),
     })
 }
 
@@ -199,9 +222,13 @@ impl Spread {
     /// What torque and velocity noise make of a joint's mean square at one of the gains.
     fn without_model(&self, torque: &[f64], velocity: &[f64], step: f64, gain: usize, j: usize) -> f64 {
         let speeds: f64 = velocity.iter().enumerate().map(|(k, square)| self.mass[(j, k)] * square).sum();
-        let gain = self.gains[gain];
-        torque[j].powi(2) * NoiseModel::torque_share(gain, step)
-            + NoiseModel::velocity_share(gain, step) * speeds
+        torque[j].powi(2) * NoiseModel::torque_share(self.gains[gain], step)
+            + self.velocity_share(gain, step) * speeds
+    }
+
+    /// What the motion and the observer of one of the gains leave of the variance of the momentum's noise.
+    fn velocity_share(&self, gain: usize, step: f64) -> f64 {
+        self.moving[gain] * NoiseModel::velocity_share(self.gains[gain], step)
     }
 
     /// Sets the slow errors of one joint; returns the misfit, relative to the mean squares.
@@ -236,12 +263,13 @@ impl Spread {
             }
             for (k, limit) in limits.iter().enumerate() {
                 let (mut norm, mut slope) = (0.0, 0.0);
-                for (g, &gain) in self.gains.iter().enumerate() {
+                for g in 0..self.gains.len() {
+                    let share = self.velocity_share(g, step);
                     for (j, time) in times.iter().enumerate() {
                         let total = self.squares[g][j].max(f64::MIN_POSITIVE);
-                        let column = NoiseModel::velocity_share(gain, step) * self.mass[(j, k)] / total;
+                        let column = share * self.mass[(j, k)] / total;
                         let known = self.without_model(torque, &parts.velocity, step, g, j)
-                            + NoiseModel::model_share(gain, *time) * parts.model[j];
+                            + NoiseModel::model_share(self.gains[g], *time) * parts.model[j];
                         norm += column * column;
                         slope += column * (total - known) / total;
                     }

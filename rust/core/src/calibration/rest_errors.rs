@@ -7,8 +7,8 @@ use super::judged::Judged;
 use super::log::Log;
 use super::noise::SMALLEST;
 use crate::detection::{
-    gaussian_level, ContactTest, FrictionErrors, Level, Tail, FOLLOW_TIME, GAINS, LARGEST_STEP, PEAK_TIME,
-    SLOW,
+    gaussian_level, ContactTest, FrictionErrors, Level, Standstill, Tail, FOLLOW_TIME, GAINS, LARGEST_STEP,
+    PEAK_TIME, SLOW,
 };
 use crate::error::Result;
 use crate::observer::{ObserverBank, Step};
@@ -46,6 +46,8 @@ struct Stretch {
     followed: Vec<Vec<f64>>,
     fast: Vec<Vec<f64>>,
     velocity: Vec<Vec<f64>>,
+    /// Share of the velocities' noise that the motion allowed.
+    moving: Vec<f64>,
 }
 
 /// Completes a noise model, and finds the tails of the statistic for those gains that the log's step allows. `coulomb` is the
@@ -73,9 +75,14 @@ pub(super) fn rest_errors(
     }
     let mut stretches = vec![];
     for part in parts {
-        stretches.extend(part.stretches(robot, log, skipped, step, &gains)?);
+        let standstill = Standstill::new(&noise.velocity);
+        stretches.extend(part.stretches(robot, log, skipped, step, &gains, standstill)?);
     }
-    let white = white_variance(robot, log, parts, &noise, gains[0], step)?;
+    let shares: Vec<f64> = stretches.iter().flat_map(|stretch| stretch.moving.iter().copied()).collect();
+    let moving = shares.iter().sum::<f64>() / f64::max(shares.len() as f64, 1.0);
+    let velocity = noise.velocity.iter().map(|deviation| moving.sqrt() * deviation).collect();
+    let white = NoiseModel { velocity, model: vec![0.0], ..noise.clone() };
+    let white = mean_variance(robot, log, parts, &white, gains[0], step)?;
     let spacing = SPACING.max(step);
     let event_gain = gains[1.min(gains.len() - 1)];
     for (j, white) in white.into_iter().enumerate() {
@@ -110,6 +117,7 @@ impl Judged {
         skipped: &[bool],
         step: f64,
         gains: &[f64],
+        mut standstill: Standstill,
     ) -> Result<Vec<Stretch>> {
         let nv = robot.nv();
         let mut bank = ObserverBank::new(nv, step, gains);
@@ -121,11 +129,13 @@ impl Judged {
             let dt = row.dt;
             if row.starts {
                 bank.reset();
+                standstill.reset();
                 bias.fill(0.0);
                 (since, kept) = (0.0, 0.0);
                 stretches.push(Stretch::default());
             }
             bank.advance(row.unexplained, Step::Of(dt));
+            let moving = standstill.advance(row.velocity, dt);
             since += dt;
             kept += dt;
             let torque = &bank.torques()[0];
@@ -139,14 +149,15 @@ impl Judged {
                 stretch.followed.push(torque.iter().zip(&bias).map(|(torque, bias)| torque - bias).collect());
                 stretch.fast.push(bank.torques()[event].clone());
                 stretch.velocity.push(row.velocity.to_vec());
+                stretch.moving.push(moving);
             }
         })?;
         Ok(stretches)
     }
 }
 
-/// By velocity variable: what white noise of torque and velocity leave behind an observer.
-fn white_variance(
+/// By velocity variable: the mean variance behind an observer.
+fn mean_variance(
     robot: &Arc<Robot>,
     log: &Log<'_>,
     parts: &[Judged],
@@ -154,12 +165,11 @@ fn white_variance(
     gain: f64,
     step: f64,
 ) -> Result<Vec<f64>> {
-    let white = NoiseModel { model: vec![0.0], ..noise.clone() };
     let (mut sum, mut poses) = (vec![0.0; robot.nv()], 0.0);
     for part in parts {
         for row in part.rows.clone().step_by((part.rows.len() / POSES).max(1)) {
             let covariance =
-                white.covariance(part.robot.as_ref().unwrap_or(robot), log.q_of(robot, row), gain, step)?;
+                noise.covariance(part.robot.as_ref().unwrap_or(robot), log.q_of(robot, row), gain, step)?;
             sum.iter_mut().enumerate().for_each(|(j, sum)| *sum += covariance[(j, j)]);
             poses += 1.0;
         }

@@ -9,6 +9,7 @@ use super::payload_errors::{Load, PayloadErrors};
 use super::recent_torque::RecentTorque;
 use super::signal::Signal;
 use super::slow_errors::SlowErrors;
+use super::standstill::Standstill;
 use super::velocity_covariance::VelocityCovariance;
 use crate::math::chi_square::standard_deviations;
 use crate::observer::{ObserverBank, Step};
@@ -47,6 +48,7 @@ pub(crate) struct ContactTest {
     bank: Option<ObserverBank>,
     signals: Vec<Signal>,
     velocity: VelocityCovariance,
+    standstill: Standstill,
     slow: SlowErrors,
     friction: FrictionErrors,
     payload: PayloadErrors,
@@ -83,6 +85,7 @@ impl ContactTest {
             bank: Some(ObserverBank::new(nv, dt, &gains)),
             signals: levels.iter().map(signal).collect(),
             velocity: VelocityCovariance::new(&robot, &variances.velocity),
+            standstill: Standstill::new(&variances.velocity),
             slow: SlowErrors::new(
                 variances.slow.clone(),
                 ModelErrors::new(model_errors.to_vec(), nv),
@@ -127,11 +130,13 @@ impl ContactTest {
         }
         self.velocity.advance(&self.robot, kinematics);
         self.slow.of_model_mut().advance(&self.robot, kinematics, v);
-        self.friction.advance(v, step.length(self.dt));
-        self.payload.advance(&self.robot, kinematics, step.length(self.dt));
+        let length = step.length(self.dt);
+        let moving = self.standstill.advance(v, length);
+        self.friction.advance(v, length);
+        self.payload.advance(&self.robot, kinematics, length);
         let Self { signals, velocity, slow, friction, payload, .. } = self;
-        let told = unexplained.map(|_| step.length(self.dt));
-        signals.iter_mut().for_each(|signal| signal.advance(told));
+        let told = unexplained.map(|_| length);
+        signals.iter_mut().for_each(|signal| signal.advance(told, moving));
         let whiten = |signal: &mut Signal| signal.whiten(velocity, slow, friction, payload);
         if self.started {
             let next = self.next;
@@ -309,6 +314,7 @@ impl ContactTest {
         }
         self.signals.iter_mut().for_each(Signal::reset);
         self.velocity.reset();
+        self.standstill.reset();
         self.slow.reset();
         self.friction.reset();
         self.payload.reset();

@@ -65,10 +65,11 @@ impl Signal {
         }
     }
 
-    /// A step of the observer, of a length (s); none where it keeps its torque.
+    /// A step of the observer, of a length (s); none where it keeps its torque. `moving` is the share of the velocities'
+    /// noise that the robot's motion allows.
     #[inline]
-    pub fn advance(&mut self, length: Option<f64>) {
-        self.white.iter_mut().for_each(|white| white.advance(length));
+    pub fn advance(&mut self, length: Option<f64>, moving: f64) {
+        self.white.iter_mut().for_each(|white| white.advance(length, moving));
         self.compare();
     }
 

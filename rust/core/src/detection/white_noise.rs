@@ -13,6 +13,8 @@ pub(crate) struct WhiteNoise {
     newest_torque: f64,
     newest_momentum: f64,
     nominal_newest: [f64; 2],
+    /// Share of the momentum's noise that a sample has.
+    moving: f64,
     /// Of the last step, since most are alike (s).
     length: f64,
     decay: f64,
@@ -52,14 +54,17 @@ impl WhiteNoise {
             newest_torque,
             newest_momentum,
             nominal_newest,
+            moving: 1.0,
             length: dt,
             decay,
         }
     }
 
-    /// A step of `length` (s); none where the observer keeps its output.
+    /// A step of `length` (s); none where the observer keeps its output. `moving` is the share of the momentum's noise
+    /// that the robot's motion allows.
     #[inline]
-    pub fn advance(&mut self, length: Option<f64>) {
+    pub fn advance(&mut self, length: Option<f64>, moving: f64) {
+        self.moving = moving;
         let Some(length) = length else {
             (self.newest_torque, self.newest_momentum) = (0.0, 0.0);
             return;
@@ -81,12 +86,13 @@ impl WhiteNoise {
     /// After the last step.
     #[inline]
     pub fn shares(&self) -> WhiteShares {
-        self.now
+        WhiteShares { velocity: self.now.velocity * self.moving, ..self.now }
     }
 
     /// As after nominal steps.
     pub fn reset(&mut self) {
         self.now = self.nominal;
+        self.moving = 1.0;
         [self.newest_torque, self.newest_momentum] = self.nominal_newest;
     }
 }
@@ -101,7 +107,7 @@ mod tests {
         for (gain, dt) in [(8.0, 1e-3), (200.0, 1e-3), (50.0, 0.02), (1e9, 1e-3)] {
             // From another length to this one.
             let mut noise = WhiteNoise::new(gain, 3.0 * dt);
-            (0..20_000).for_each(|_| noise.advance(Some(dt)));
+            (0..20_000).for_each(|_| noise.advance(Some(dt), 1.0));
             let WhiteShares { torque, velocity } = noise.shares();
             assert!((torque / NoiseModel::torque_share(gain, dt) - 1.0).abs() < 1e-9, "{gain} {dt}");
             assert!((velocity / NoiseModel::velocity_share(gain, dt) - 1.0).abs() < 1e-9, "{gain} {dt}");
@@ -129,9 +135,9 @@ mod tests {
         }
         let mut noise = WhiteNoise::new(gain, 1e-3);
         noise.now = WhiteShares { torque: 0.0, velocity: 0.0 };
-        noise.advance(None);
+        noise.advance(None, 1.0);
         for (length, [torque, velocity]) in lengths.iter().zip(squares) {
-            noise.advance(Some(*length));
+            noise.advance(Some(*length), 1.0);
             let shares = noise.shares();
             assert!((shares.torque / torque - 1.0).abs() < 0.05, "{length} {torque}");
             assert!((shares.velocity / velocity - 1.0).abs() < 0.05, "{length} {velocity}");
@@ -142,9 +148,9 @@ mod tests {
     fn after_a_gap_the_noise_before_it_is_not_met_again() {
         let mut noise = WhiteNoise::new(50.0, 1e-3);
         let before = noise.shares();
-        noise.advance(None);
+        noise.advance(None, 1.0);
         assert_eq!(noise.shares(), before);
-        noise.advance(Some(1e-3));
+        noise.advance(Some(1e-3), 1.0);
         assert!(noise.shares().velocity > before.velocity && noise.shares().torque < before.torque);
         noise.reset();
         assert_eq!(noise.shares(), before);
