@@ -8,7 +8,7 @@ use super::judged::Judged;
 use super::log::Log;
 use crate::detection::{Standstill, LARGEST_STEP};
 use crate::error::Result;
-use crate::observer::{ObserverBank, Step};
+use crate::observer::{ObserverBank, Order, Step};
 use crate::robot::Robot;
 use crate::torque::NoiseModel;
 
@@ -128,7 +128,7 @@ fn spread(
     let (mut counts, mut moving) = (vec![0.0; gains.len()], vec![0.0; gains.len()]);
     let (mut mass, mut poses) = (DMatrix::zeros(nv, nv), 0.0);
     for part in parts {
-        let mut bank = ObserverBank::new(nv, step, &gains);
+        let mut bank = ObserverBank::new(nv, step, &gains, Order::First);
         let mut since = 0.0;
         part.each_row(robot, log, skipped, step, |row| {
             if row.starts {

@@ -3,15 +3,17 @@
 
 use std::sync::Arc;
 
+use nalgebra::{DMatrix, DVector};
+
 use super::judged::Judged;
 use super::log::Log;
 use super::noise::SMALLEST;
 use crate::detection::{
-    gaussian_level, ContactTest, FrictionErrors, Level, Standstill, Tail, FOLLOW_TIME, GAINS, LARGEST_STEP,
-    PEAK_TIME, SLOW,
+    gaussian_level, ContactTest, FrictionErrors, Level, Standstill, Tail, WhiteNoise, WhiteShares,
+    FOLLOW_TIME, GAINS, LARGEST_STEP, PEAK_TIME, SLOW,
 };
 use crate::error::Result;
-use crate::observer::{ObserverBank, Step};
+use crate::observer::{ObserverBank, Order, Step};
 use crate::robot::Robot;
 use crate::torque::NoiseModel;
 
@@ -80,9 +82,9 @@ pub(super) fn rest_errors(
     }
     let shares: Vec<f64> = stretches.iter().flat_map(|stretch| stretch.moving.iter().copied()).collect();
     let moving = shares.iter().sum::<f64>() / f64::max(shares.len() as f64, 1.0);
-    let velocity = noise.velocity.iter().map(|deviation| moving.sqrt() * deviation).collect();
-    let white = NoiseModel { velocity, model: vec![0.0], ..noise.clone() };
-    let white = mean_variance(robot, log, parts, &white, gains[0], step)?;
+    let mut passed = WhiteNoise::new(gains[0], step, Order::Second).shares();
+    passed.velocity *= moving;
+    let white = white_variance(robot, log, parts, &noise, passed)?;
     let spacing = SPACING.max(step);
     let event_gain = gains[1.min(gains.len() - 1)];
     for (j, white) in white.into_iter().enumerate() {
@@ -96,7 +98,7 @@ pub(super) fn rest_errors(
         .map(|j| {
             // What only one of the gains shows is no friction: noise of velocities, accelerations.
             let shown = |torque: &dyn Fn(&Stretch) -> &Vec<Vec<f64>>, gain: f64| {
-                Some(events(&stretches, torque, j, spacing)? / FrictionErrors::response(gain))
+                Some(events(&stretches, torque, j, spacing)? / FrictionErrors::response(gain, Order::Second))
             };
             let slow = shown(&|stretch| &stretch.slow, gains[0]);
             match slow.zip(shown(&|stretch| &stretch.fast, event_gain)) {
@@ -120,7 +122,7 @@ impl Judged {
         mut standstill: Standstill,
     ) -> Result<Vec<Stretch>> {
         let nv = robot.nv();
-        let mut bank = ObserverBank::new(nv, step, gains);
+        let mut bank = ObserverBank::new(nv, step, gains, Order::Second);
         let event = 1.min(gains.len() - 1);
         let mut bias = vec![0.0; nv];
         let (mut since, mut kept) = (0.0, 0.0);
@@ -156,25 +158,30 @@ impl Judged {
     }
 }
 
-/// By velocity variable: the mean variance behind an observer.
-fn mean_variance(
+/// By velocity variable: what an observer leaves of the white noise of torque and velocity, at the poses of the log.
+fn white_variance(
     robot: &Arc<Robot>,
     log: &Log<'_>,
     parts: &[Judged],
     noise: &NoiseModel,
-    gain: f64,
-    step: f64,
+    shares: WhiteShares,
 ) -> Result<Vec<f64>> {
-    let (mut sum, mut poses) = (vec![0.0; robot.nv()], 0.0);
+    let (mut squares, mut poses) = (DMatrix::zeros(robot.nv(), robot.nv()), 0.0);
     for part in parts {
         for row in part.rows.clone().step_by((part.rows.len() / POSES).max(1)) {
-            let covariance =
-                noise.covariance(part.robot.as_ref().unwrap_or(robot), log.q_of(robot, row), gain, step)?;
-            sum.iter_mut().enumerate().for_each(|(j, sum)| *sum += covariance[(j, j)]);
+            let mass = part.robot.as_ref().unwrap_or(robot).mass_matrix(log.q_of(robot, row))?;
+            squares += mass.map(|m| m * m);
             poses += 1.0;
         }
     }
-    Ok(sum.into_iter().map(|sum| sum / f64::max(poses, 1.0)).collect())
+    let velocity = DVector::from_iterator(robot.nv(), noise.velocity.iter().map(|v| v * v));
+    let momentum = squares * velocity * (shares.velocity / f64::max(poses, 1.0));
+    Ok(noise
+        .torque
+        .iter()
+        .zip(&momentum)
+        .map(|(torque, momentum)| torque * torque * shares.torque + momentum)
+        .collect())
 }
 
 /// The variance of slow errors of a joint and the time over which they change (s), from their mean square before and after a
@@ -191,7 +198,7 @@ fn slow_errors(stretches: &[Stretch], joint: usize, white: f64, gain: f64) -> Op
         return Some((0.0, TIMES[0]));
     }
     let time = (FOLLOW_TIME * (before / after - 1.0)).clamp(TIMES[0], TIMES[1]);
-    Some((before.max(after) / NoiseModel::model_share(gain, time), time))
+    Some((before.max(after) / Order::Second.slow_share(gain, time), time))
 }
 
 /// The mean square of what a joint's torque does at starts and stops beyond what it does in motion; none of too few.

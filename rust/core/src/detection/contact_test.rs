@@ -12,7 +12,7 @@ use super::slow_errors::SlowErrors;
 use super::standstill::Standstill;
 use super::velocity_covariance::VelocityCovariance;
 use crate::math::chi_square::standard_deviations;
-use crate::observer::{ObserverBank, Step};
+use crate::observer::{ObserverBank, Order, Step};
 use crate::robot::{Kinematics, Robot};
 use crate::torque::{ErrorVariances, ModelError};
 
@@ -79,10 +79,11 @@ impl ContactTest {
     ) -> Self {
         let nv = robot.nv();
         let gains: Vec<f64> = levels.iter().map(|level| level.gain).collect();
-        let signal =
-            |level: &Level| Signal::new(variances, &vec![level.gain; nv], dt, level.level, level.gaussian);
+        let signal = |level: &Level| {
+            Signal::new(variances, &vec![level.gain; nv], Order::Second, dt, level.level, level.gaussian)
+        };
         ContactTest {
-            bank: Some(ObserverBank::new(nv, dt, &gains)),
+            bank: Some(ObserverBank::new(nv, dt, &gains, Order::Second)),
             signals: levels.iter().map(signal).collect(),
             velocity: VelocityCovariance::new(&robot, &variances.velocity),
             standstill: Standstill::new(&variances.velocity),
@@ -116,7 +117,7 @@ impl ContactTest {
         model_errors: &[ModelError],
         follow_time: f64,
     ) -> Self {
-        let signal = Signal::new(variances, gain, dt, level.level, level.gaussian);
+        let signal = Signal::new(variances, gain, Order::First, dt, level.level, level.gaussian);
         let test = ContactTest::new(robot, variances, dt, &[], model_errors, follow_time);
         ContactTest { bank: None, signals: vec![signal], ..test }
     }

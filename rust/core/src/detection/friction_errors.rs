@@ -1,5 +1,7 @@
 //! Friction is known least while a joint starts, stops or turns round.
 
+use crate::observer::Order;
+
 /// Below this speed a joint's friction depends on more than its velocity (rad/s; m/s): on how it came to rest.
 pub(crate) const SLOW: f64 = 0.02;
 /// An error of friction at a start or stop is forgotten in this time (s).
@@ -41,8 +43,8 @@ impl FrictionErrors {
     }
 
     /// What an observer of a `gain` (1/s) makes of the variance.
-    pub fn response(gain: f64) -> f64 {
-        (1.0 - (-gain * DURATION).exp()).powi(2)
+    pub fn response(gain: f64, order: Order) -> f64 {
+        order.step_response(gain, DURATION).powi(2)
     }
 
     /// Forgets all steps.

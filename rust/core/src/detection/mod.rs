@@ -28,4 +28,5 @@ pub(crate) use gate::{check_threshold, check_wrench_threshold, is_over, Gate};
 pub(crate) use payload_errors::Load;
 pub(crate) use release::{ReleaseDetector, ReleaseRule};
 pub(crate) use standstill::Standstill;
+pub(crate) use white_noise::{WhiteNoise, WhiteShares};
 pub(crate) use whitening::Whitening;

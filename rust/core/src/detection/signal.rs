@@ -7,7 +7,8 @@ use super::slow_errors::SlowErrors;
 use super::velocity_covariance::VelocityCovariance;
 use super::white_noise::{WhiteNoise, WhiteShares};
 use super::whitening::Whitening;
-use crate::torque::{ErrorVariances, NoiseModel};
+use crate::observer::Order;
+use crate::torque::ErrorVariances;
 
 /// A covariance is worked out anew at once where white noise has changed by more than this factor since.
 const STALE: f64 = 1.1;
@@ -41,18 +42,27 @@ pub(super) struct Signal {
 }
 
 impl Signal {
-    pub fn new(variances: &ErrorVariances, gain: &[f64], dt: f64, level: f64, gaussian_level: f64) -> Self {
+    /// Torques behind observers of a gain each (1/s).
+    pub fn new(
+        variances: &ErrorVariances,
+        gain: &[f64],
+        order: Order,
+        dt: f64,
+        level: f64,
+        gaussian_level: f64,
+    ) -> Self {
         let by_joint = |share: &dyn Fn(usize) -> f64| (0..gain.len()).map(share).collect::<Vec<f64>>();
         let alike = gain.windows(2).all(|pair| pair[0] == pair[1]);
         let distinct = if alike { gain.len().min(1) } else { gain.len() };
-        let white: Vec<WhiteNoise> = gain[..distinct].iter().map(|gain| WhiteNoise::new(*gain, dt)).collect();
+        let white: Vec<WhiteNoise> =
+            gain[..distinct].iter().map(|gain| WhiteNoise::new(*gain, dt, order)).collect();
         let shares: Vec<WhiteShares> = white.iter().map(WhiteNoise::shares).collect();
         Signal {
             of_sample: variances.torque.clone(),
             torque: vec![0.0; gain.len()],
             velocity: vec![0.0; gain.len()],
-            model: by_joint(&|j| NoiseModel::model_share(gain[j], variances.slow.model_time[j])),
-            friction: by_joint(&|j| variances.friction[j] * FrictionErrors::response(gain[j])),
+            model: by_joint(&|j| order.slow_share(gain[j], variances.slow.model_time[j])),
+            friction: by_joint(&|j| variances.friction[j] * FrictionErrors::response(gain[j], order)),
             growing: shares.clone(),
             complete: shares,
             white,

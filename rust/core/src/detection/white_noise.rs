@@ -1,18 +1,16 @@
 //! What an observer leaves of white noise, step by step: a longer step averages less of it.
 
-use crate::torque::NoiseModel;
+use crate::observer::Order;
 
 /// Variances behind an observer of one gain, as shares of those of a sample, by an exact recursion over the steps.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WhiteNoise {
-    /// (1/s).
-    gain: f64,
-    nominal: WhiteShares,
-    now: WhiteShares,
-    /// Of the newest sample's noise in the output: the next step meets that noise again. Of the torque, and of the momentum (1/s).
-    newest_torque: f64,
-    newest_momentum: f64,
-    nominal_newest: [f64; 2],
+    order: Order,
+    /// Of each low-pass (1/s).
+    pole: f64,
+    nominal: [Passed; 2],
+    /// What is left of the torque's noise, and of the momentum's.
+    now: [Passed; 2],
     /// Share of the momentum's noise that a sample has.
     moving: f64,
     /// Of the last step, since most are alike (s).
@@ -37,27 +35,67 @@ impl WhiteShares {
     }
 }
 
+/// White noise of unit variance behind two low-passes in series.
+#[derive(Debug, Clone, Copy)]
+struct Passed {
+    /// Of the newest sample's noise in both outputs: the next step meets that noise again.
+    newest: [f64; 2],
+    /// Variance behind the first, covariance of both, and variance behind the second.
+    first: f64,
+    both: f64,
+    second: f64,
+}
+
+impl Passed {
+    /// A step in which each low-pass forgets all but `decay`; its input is a sum of the noise of the samples at its ends.
+    #[inline]
+    fn advance(&mut self, decay: f64, [old, new]: [f64; 2]) {
+        let new_share = 1.0 - decay;
+        let (met, entering) = (new_share * old, new_share * new);
+        // Of what does not come from the newest sample: its variance behind the first low-pass, and its covariance with the second.
+        let kept = met * met + 2.0 * met * decay * self.newest[0] + decay * decay * self.first;
+        let shared = met * self.newest[1] + decay * self.both;
+        let entering_twice = new_share * entering;
+        self.second = entering_twice * entering_twice
+            + new_share * new_share * kept
+            + 2.0 * new_share * decay * shared
+            + decay * decay * self.second;
+        self.both = entering * entering_twice + new_share * kept + decay * shared;
+        self.first = entering * entering + kept;
+        self.newest = [entering, entering_twice];
+    }
+
+    /// What many equal steps lead to.
+    fn steady(decay: f64, [old, new]: [f64; 2]) -> Self {
+        let new_share = 1.0 - decay;
+        let (met, entering) = (new_share * old, new_share * new);
+        let entering_twice = new_share * entering;
+        let forgotten = new_share * (1.0 + decay);
+        let first = (entering * entering + met * met + 2.0 * met * decay * entering) / forgotten;
+        let kept = first - entering * entering;
+        let both = (entering * entering_twice + new_share * kept + decay * met * entering_twice) / forgotten;
+        let shared = met * entering_twice + decay * both;
+        let second = (entering_twice * entering_twice
+            + new_share * new_share * kept
+            + 2.0 * new_share * decay * shared)
+            / forgotten;
+        Passed { newest: [entering, entering_twice], first, both, second }
+    }
+}
+
+/// The mean of the torques at both ends of a step of a length (s), and the difference of the momenta over it.
+#[inline]
+fn inputs(length: f64) -> [[f64; 2]; 2] {
+    [[0.5, 0.5], [-1.0 / length, 1.0 / length]]
+}
+
 impl WhiteNoise {
     /// Behind an observer of a `gain` (1/s) that has been called every `dt` (s).
-    pub fn new(gain: f64, dt: f64) -> Self {
-        let decay = (-gain * dt).exp();
-        let nominal = WhiteShares {
-            torque: NoiseModel::torque_share(gain, dt),
-            velocity: NoiseModel::velocity_share(gain, dt),
-        };
-        let nominal_newest = [0.5 * (1.0 - decay), (1.0 - decay) / dt];
-        let [newest_torque, newest_momentum] = nominal_newest;
-        WhiteNoise {
-            gain,
-            nominal,
-            now: nominal,
-            newest_torque,
-            newest_momentum,
-            nominal_newest,
-            moving: 1.0,
-            length: dt,
-            decay,
-        }
+    pub fn new(gain: f64, dt: f64, order: Order) -> Self {
+        let pole = order.pole(gain);
+        let decay = (-pole * dt).exp();
+        let nominal = inputs(dt).map(|input| Passed::steady(decay, input));
+        WhiteNoise { order, pole, nominal, now: nominal, moving: 1.0, length: dt, decay }
     }
 
     /// A step of `length` (s); none where the observer keeps its output. `moving` is the share of the momentum's noise
@@ -66,34 +104,30 @@ impl WhiteNoise {
     pub fn advance(&mut self, length: Option<f64>, moving: f64) {
         self.moving = moving;
         let Some(length) = length else {
-            (self.newest_torque, self.newest_momentum) = (0.0, 0.0);
+            self.now.iter_mut().for_each(|passed| passed.newest = [0.0; 2]);
             return;
         };
         if length != self.length {
-            (self.length, self.decay) = (length, (-self.gain * length).exp());
+            (self.length, self.decay) = (length, (-self.pole * length).exp());
         }
-        let decay = self.decay;
-        // Of a mean of the torques at both ends, and of a difference of momenta.
-        let torque = 0.5 * (1.0 - decay);
-        let momentum = (1.0 - decay) / length;
-        let WhiteShares { torque: of_torque, velocity: of_velocity } = &mut self.now;
-        *of_torque = 2.0 * torque * (torque + decay * self.newest_torque) + decay * decay * *of_torque;
-        *of_velocity =
-            2.0 * momentum * (momentum - decay * self.newest_momentum) + decay * decay * *of_velocity;
-        (self.newest_torque, self.newest_momentum) = (torque, momentum);
+        for (passed, input) in self.now.iter_mut().zip(inputs(length)) {
+            passed.advance(self.decay, input);
+        }
     }
 
     /// After the last step.
     #[inline]
     pub fn shares(&self) -> WhiteShares {
-        WhiteShares { velocity: self.now.velocity * self.moving, ..self.now }
+        let [torque, velocity] = self.now.map(|passed| match self.order {
+            Order::First => passed.first,
+            Order::Second => passed.second,
+        });
+        WhiteShares { torque, velocity: self.moving * velocity }
     }
 
     /// As after nominal steps.
     pub fn reset(&mut self) {
-        self.now = self.nominal;
-        self.moving = 1.0;
-        [self.newest_torque, self.newest_momentum] = self.nominal_newest;
+        (self.now, self.moving) = (self.nominal, 1.0);
     }
 }
 
@@ -101,12 +135,13 @@ impl WhiteNoise {
 mod tests {
     use super::*;
     use crate::math::random::Stream;
+    use crate::torque::NoiseModel;
 
     #[test]
     fn steps_of_one_length_leave_what_the_noise_model_says() {
         for (gain, dt) in [(8.0, 1e-3), (200.0, 1e-3), (50.0, 0.02), (1e9, 1e-3)] {
             // From another length to this one.
-            let mut noise = WhiteNoise::new(gain, 3.0 * dt);
+            let mut noise = WhiteNoise::new(gain, 3.0 * dt, Order::First);
             (0..20_000).for_each(|_| noise.advance(Some(dt), 1.0));
             let WhiteShares { torque, velocity } = noise.shares();
             assert!((torque / NoiseModel::torque_share(gain, dt) - 1.0).abs() < 1e-9, "{gain} {dt}");
@@ -116,37 +151,59 @@ mod tests {
 
     #[test]
     fn unequal_steps_leave_what_many_runs_show() {
+        [Order::First, Order::Second].into_iter().for_each(compare_with_runs);
+    }
+
+    fn compare_with_runs(order: Order) {
         const RUNS: usize = 20_000;
         let (gain, stream) = (50.0, Stream::new(3));
         let lengths = [0.02, 1e-3, 0.5e-3, 0.012, 0.03, 2e-3, 0.5e-3, 0.018];
         let mut squares = [[0.0; 2]; 8];
         for run in 0..RUNS {
             let normals = |step: usize| stream.normals(2 * (run * 9 + step) as u64);
-            let mut output = [0.0; 2];
+            let mut output = [[0.0; 2]; 2];
             for (step, length) in lengths.iter().enumerate() {
                 let (before, now) = (normals(step), normals(step + 1));
-                let decay = f64::exp(-gain * length);
+                let decay = (-order.pole(gain) * length).exp();
                 let unexplained = [0.5 * (before[0] + now[0]), (now[1] - before[1]) / length];
-                for (output, new) in output.iter_mut().zip(unexplained) {
-                    *output = new + decay * (*output - new);
+                for ([first, second], new) in output.iter_mut().zip(unexplained) {
+                    *first = new + decay * (*first - new);
+                    *second = *first + decay * (*second - *first);
                 }
-                squares[step].iter_mut().zip(output).for_each(|(sum, x)| *sum += x * x / RUNS as f64);
+                let last = output.map(|[first, second]| if order == Order::First { first } else { second });
+                squares[step].iter_mut().zip(last).for_each(|(sum, x)| *sum += x * x / RUNS as f64);
             }
         }
-        let mut noise = WhiteNoise::new(gain, 1e-3);
-        noise.now = WhiteShares { torque: 0.0, velocity: 0.0 };
+        let mut noise = WhiteNoise::new(gain, 1e-3, order);
+        noise.now = [Passed { newest: [0.0; 2], first: 0.0, both: 0.0, second: 0.0 }; 2];
         noise.advance(None, 1.0);
         for (length, [torque, velocity]) in lengths.iter().zip(squares) {
             noise.advance(Some(*length), 1.0);
             let shares = noise.shares();
-            assert!((shares.torque / torque - 1.0).abs() < 0.05, "{length} {torque}");
-            assert!((shares.velocity / velocity - 1.0).abs() < 0.05, "{length} {velocity}");
+            assert!((shares.torque / torque - 1.0).abs() < 0.05, "{order:?} {length} {torque}");
+            assert!((shares.velocity / velocity - 1.0).abs() < 0.05, "{order:?} {length} {velocity}");
         }
     }
 
     #[test]
+    fn two_low_passes_come_to_their_steady_state() {
+        for (gain, dt) in [(8.0, 1e-3), (200.0, 1e-3), (50.0, 0.02)] {
+            let steady = WhiteNoise::new(gain, dt, Order::Second).shares();
+            let mut noise = WhiteNoise::new(gain, dt, Order::Second);
+            noise.advance(Some(7.0 * dt), 1.0);
+            (0..20_000).for_each(|_| noise.advance(Some(dt), 1.0));
+            assert!((noise.shares().torque / steady.torque - 1.0).abs() < 1e-9, "{gain} {dt}");
+            assert!((noise.shares().velocity / steady.velocity - 1.0).abs() < 1e-9, "{gain} {dt}");
+        }
+        // Of the momentum's noise far less is left than behind one low-pass of the same delay, and of the torque's as much.
+        let [one, two] =
+            [Order::First, Order::Second].map(|order| WhiteNoise::new(8.0, 1e-3, order).shares());
+        assert!(two.velocity < 0.02 * one.velocity && (two.torque / one.torque - 1.0).abs() < 0.02);
+    }
+
+    #[test]
     fn after_a_gap_the_noise_before_it_is_not_met_again() {
-        let mut noise = WhiteNoise::new(50.0, 1e-3);
+        let mut noise = WhiteNoise::new(50.0, 1e-3, Order::First);
         let before = noise.shares();
         noise.advance(None, 1.0);
         assert_eq!(noise.shares(), before);
