@@ -77,7 +77,7 @@ pub(super) fn rest_errors(
     }
     let mut stretches = vec![];
     for part in parts {
-        let standstill = Standstill::new(&noise.velocity);
+        let standstill = Standstill::new(&robot.per_velocity("noise.velocity", &noise.velocity)?);
         stretches.extend(part.stretches(robot, log, skipped, step, &gains, standstill)?);
     }
     let shares: Vec<f64> = stretches.iter().flat_map(|stretch| stretch.moving.iter().copied()).collect();
@@ -174,7 +174,8 @@ fn white_variance(
             poses += 1.0;
         }
     }
-    let velocity = DVector::from_iterator(robot.nv(), noise.velocity.iter().map(|v| v * v));
+    let velocity = robot.per_velocity("noise.velocity", &noise.velocity)?;
+    let velocity = DVector::from_iterator(robot.nv(), velocity.iter().map(|v| v * v));
     let momentum = squares * velocity * (shares.velocity / f64::max(poses, 1.0));
     Ok(noise
         .torque
@@ -267,7 +268,7 @@ fn tails(
                 largest.fill(0.0);
                 (since, window) = (0.0, 0.0);
             }
-            test.advance(row.kinematics, row.velocity, row.unexplained, Step::Of(dt));
+            test.advance(row.kinematics, row.velocity, true, row.unexplained, Step::Of(dt));
             test.evaluate(&[], false, None);
             test.follow(dt, row.starts || test.suspicious());
             since += dt;

@@ -25,6 +25,8 @@ pub(crate) const LARGEST_STEP: f64 = 0.6;
 pub(crate) const FOLLOW_TIME: f64 = 3.0;
 /// Beyond this share of the level a contact goes on, and slow errors are not followed: what grows slowly may be one.
 const SUSPICIOUS: f64 = 0.5;
+/// Which of the gains tells when a contact has ended: the slowest still holds its torque.
+const PROMPT: usize = 1;
 /// A joint is over its own threshold beyond so many standard deviations.
 const JOINT_LEVEL: f64 = 5.0;
 
@@ -58,6 +60,8 @@ pub(crate) struct ContactTest {
     without_bias: Vec<f64>,
     /// The torque that slow errors are followed by, without what is free.
     followed: Vec<f64>,
+    /// The same of a faster observer, which has soon forgotten a contact that has ended.
+    prompt: Vec<f64>,
     /// By velocity variable: over one where the joint is over its own threshold.
     joints: Vec<f64>,
     suspicious: bool,
@@ -98,6 +102,7 @@ impl ContactTest {
             started: false,
             without_bias: vec![0.0; nv],
             followed: vec![0.0; nv],
+            prompt: vec![0.0; nv],
             joints: vec![0.0; nv],
             suspicious: false,
             recent: RecentTorque::new(nv),
@@ -122,10 +127,17 @@ impl ContactTest {
         ContactTest { bank: None, signals: vec![signal], ..test }
     }
 
-    /// A step to a pose and velocities `(nv,)`, with the external torque before any low-pass; none where the step told nothing
+    /// A step to a pose and velocities `(nv,)`, whether these are measured, and the external torque before any low-pass; none where the step told nothing
     /// of it.
     #[inline]
-    pub fn advance(&mut self, kinematics: &Kinematics, v: &[f64], unexplained: Option<&[f64]>, step: Step) {
+    pub fn advance(
+        &mut self,
+        kinematics: &Kinematics,
+        v: &[f64],
+        known: bool,
+        unexplained: Option<&[f64]>,
+        step: Step,
+    ) {
         if let Some(bank) = &mut self.bank {
             bank.advance(unexplained, step);
         }
@@ -133,7 +145,7 @@ impl ContactTest {
         self.slow.of_model_mut().advance(&self.robot, kinematics, v);
         let length = step.length(self.dt);
         let moving = self.standstill.advance(v, length);
-        self.friction.advance(v, length);
+        self.friction.advance(v, known, length);
         self.payload.advance(&self.robot, kinematics, length);
         let Self { signals, velocity, slow, friction, payload, .. } = self;
         let told = unexplained.map(|_| length);
@@ -160,7 +172,8 @@ impl ContactTest {
         if in_contact && free.is_none() {
             self.forget_what_fell();
         }
-        let Self { bank, signals, slow, without_bias, followed, joints, .. } = self;
+        let Self { bank, signals, slow, without_bias, followed, prompt, joints, .. } = self;
+        let last = signals.len() - 1;
         self.suspicious = false;
         joints.fill(0.0);
         let first = usize::from(bank.is_some());
@@ -170,10 +183,16 @@ impl ContactTest {
                 *value = torque - bias;
             }
             signal.evaluate(without_bias, first + which, free.as_deref_mut());
-            if which == 0 {
-                for ((followed, left), bias) in followed.iter_mut().zip(&*without_bias).zip(slow.bias()) {
-                    *followed = left + bias;
+            let keep = |torque: &mut [f64]| {
+                for ((torque, left), bias) in torque.iter_mut().zip(&*without_bias).zip(slow.bias()) {
+                    *torque = left + bias;
                 }
+            };
+            if which == 0 {
+                keep(followed);
+            }
+            if which == PROMPT.min(last) {
+                keep(prompt);
             }
             self.suspicious |= signal.statistic > SUSPICIOUS * signal.level;
             if signal.statistic <= share * signal.level {
@@ -254,9 +273,9 @@ impl ContactTest {
         (without_bias, deviations)
     }
 
-    /// The torque that slow errors are followed by.
-    pub fn slowest(&self) -> &[f64] {
-        &self.followed
+    /// The torque that tells when a contact has ended.
+    pub fn prompt(&self) -> &[f64] {
+        &self.prompt
     }
 
     /// The gains of the bank, slow to fast (1/s); none without one.

@@ -39,7 +39,7 @@ pub(crate) struct SlowErrors {
     lost: Vec<f64>,
     /// The torque of a contact, or of what looked like one, is in the observers for as long yet (s).
     unsettled: f64,
-    /// Share of the start's uncertainty that is left.
+    /// Share of the bias at the start that is not known.
     unknown: Vec<f64>,
     /// Variance of what a contact may have left in each joint (Nm squared), and the most that it can be.
     kept: Vec<f64>,
@@ -93,7 +93,7 @@ impl SlowErrors {
             let (zero, limit) = (self.zero[j], self.limit(j));
             self.bias[j] = (self.bias[j] + share * (torque - self.bias[j])).clamp(zero - limit, zero + limit);
             let left = (1.0 - share).powi(2);
-            self.unknown[j] *= left;
+            self.unknown[j] *= 1.0 - share;
             self.lost[j] *= left;
             self.kept[j] *= left;
         }
@@ -104,7 +104,7 @@ impl SlowErrors {
     fn doubt(&mut self) {
         for j in 0..self.age.len() {
             let certain = self.noise.model[j] * (1.0 - self.followed[j]);
-            let doubtful = self.kept[j] + self.drift(j) + self.unknown[j] * self.noise.bias[j];
+            let doubtful = self.kept[j] + self.drift(j) + self.unknown[j].powi(2) * self.noise.bias[j];
             if doubtful > 0.0 {
                 let known = self.time_constant * certain / (certain + doubtful);
                 self.age[j] = self.age[j].min(known.max(LEARNT_TIME));
@@ -128,8 +128,7 @@ impl SlowErrors {
         self.unsettled = (self.unsettled + TAIL * dt).min(SETTLING);
         self.lost.iter_mut().for_each(|lost| *lost += dt);
         let forgotten = (dt / BIAS_TIME).min(1.0);
-        let left = (1.0 - forgotten).powi(2);
-        self.unknown.iter_mut().for_each(|unknown| *unknown = 1.0 - (1.0 - *unknown) * left);
+        self.unknown.iter_mut().for_each(|unknown| *unknown += forgotten * (1.0 - *unknown));
         for (k, kept) in self.kept.iter_mut().enumerate() {
             let load = self.noise.relative[k] * (torque[k] - self.bias[k]);
             *kept = kept.max((load * load).min(self.largest_kept[k]));
@@ -144,7 +143,7 @@ impl SlowErrors {
         // Of an error m that its low-pass b follows: var(m) = 1, var(b) = cov(m, b) = followed, and the covariance
         // falls off with the time since.
         share * (self.noise.model[j] * (1.0 - self.followed[j]) + self.drift(j))
-            + self.unknown[j] * self.noise.bias[j]
+            + self.unknown[j].powi(2) * self.noise.bias[j]
             + self.kept[j]
     }
 

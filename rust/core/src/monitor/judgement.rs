@@ -15,13 +15,14 @@ impl ContactMonitor {
         let length = step.length(clock.dt());
         *remainder_learned = false;
         leave_out(sensing, collision_torque, Some(test.slow().bias()));
-        test.advance(observer.kinematics(), observer.velocity(), observer.unexplained(), step);
+        let (v, known) = (observer.velocity(), observer.velocity_is_known());
+        test.advance(observer.kinematics(), v, known, observer.unexplained(), step);
         test.evaluate(collision_torque, detector.collision(), free.if_any());
         let touched = detector.collision() || felt || test.suspicious();
         if touched && !new {
             release.interrupt();
         } else if touched {
-            let over = release.update(test.slowest(), test.slow().bias(), length);
+            let over = release.update(test.prompt(), test.slow().bias(), length);
             if over && !felt && test.slow().allows(release.remainder(), |k| release.could_keep(k)) {
                 test.slow_mut().set(release.remainder());
                 release.reset();
