@@ -268,7 +268,7 @@ fn tails(
                 largest.fill(0.0);
                 (since, window) = (0.0, 0.0);
             }
-            test.advance(row.kinematics, row.velocity, true, row.unexplained, Step::Of(dt));
+            test.advance(row.kinematics, row.velocity, row.unexplained, Step::Of(dt));
             test.evaluate(&[], false, None);
             test.follow(dt, row.starts || test.suspicious());
             since += dt;

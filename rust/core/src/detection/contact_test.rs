@@ -127,17 +127,10 @@ impl ContactTest {
         ContactTest { bank: None, signals: vec![signal], ..test }
     }
 
-    /// A step to a pose and velocities `(nv,)`, whether these are measured, and the external torque before any low-pass; none where the step told nothing
+    /// A step to a pose and velocities `(nv,)`, the external torque before any low-pass; none where the step told nothing
     /// of it.
     #[inline]
-    pub fn advance(
-        &mut self,
-        kinematics: &Kinematics,
-        v: &[f64],
-        known: bool,
-        unexplained: Option<&[f64]>,
-        step: Step,
-    ) {
+    pub fn advance(&mut self, kinematics: &Kinematics, v: &[f64], unexplained: Option<&[f64]>, step: Step) {
         if let Some(bank) = &mut self.bank {
             bank.advance(unexplained, step);
         }
@@ -145,7 +138,7 @@ impl ContactTest {
         self.slow.of_model_mut().advance(&self.robot, kinematics, v);
         let length = step.length(self.dt);
         let moving = self.standstill.advance(v, length);
-        self.friction.advance(v, known, length);
+        self.friction.advance(v, length);
         self.payload.advance(&self.robot, kinematics, length);
         let Self { signals, velocity, slow, friction, payload, .. } = self;
         let told = unexplained.map(|_| length);

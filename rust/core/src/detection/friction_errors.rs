@@ -4,17 +4,12 @@ use crate::observer::Order;
 
 /// Below this speed a joint's friction depends on more than its velocity (rad/s; m/s): on how it came to rest.
 pub(crate) const SLOW: f64 = 0.02;
-/// Below this speed it stands (rad/s; m/s): what friction then holds is constant, and learnt as a part of the bias.
-const STANDING: f64 = 0.002;
-/// An error of friction at a start or stop is forgotten in this time (s), and where the joint stands in this one, since the bias has
-/// to follow it.
+/// An error of friction at a start or stop is forgotten in this time (s).
 const FORGOTTEN: f64 = 0.25;
-const LEARNT: f64 = 0.5;
-/// Share of its variance that stays while the joint is slow, and while it stands.
-const CREEPING: f64 = 0.25;
-const AT_REST: f64 = 0.04;
-/// How long the error lasts, which an observer smooths (s).
-const DURATION: f64 = 0.05;
+/// Share of its variance that stays while the joint is slow.
+const AT_REST: f64 = 0.25;
+/// How long the error lasts, which an observer smooths (s): motor currents of a real arm (UR10) show it for about so long.
+const DURATION: f64 = 0.1;
 
 /// Which joints have just started or stopped.
 #[derive(Debug, Clone)]
@@ -30,19 +25,14 @@ impl FrictionErrors {
         FrictionErrors { share: vec![1.0; nv], slow: vec![true; nv] }
     }
 
-    /// A step of `dt` (s) to velocities `(nv,)`; `known`: these are measured.
+    /// A step of `dt` (s) to a velocity `(nv,)`.
     #[inline]
-    pub fn advance(&mut self, v: &[f64], known: bool, dt: f64) {
-        let [decay, learnt] = [FORGOTTEN, LEARNT].map(|time| (1.0 - dt / time).max(0.0));
+    pub fn advance(&mut self, v: &[f64], dt: f64) {
+        let decay = (1.0 - dt / FORGOTTEN).max(0.0);
         for ((share, slow), v) in self.share.iter_mut().zip(&mut self.slow).zip(v) {
-            let speed = v.abs();
-            let is_slow = speed < SLOW;
-            let least = match () {
-                () if known && speed < STANDING => (share.min(CREEPING) * learnt).max(AT_REST),
-                () if is_slow => CREEPING,
-                () => 0.0,
-            };
-            *share = if is_slow == *slow { (*share * decay).max(least) } else { 1.0 };
+            let is_slow = v.abs() < SLOW;
+            let left = (*share * decay).max(if is_slow { AT_REST } else { 0.0 });
+            *share = if is_slow == *slow { left } else { 1.0 };
             *slow = is_slow;
         }
     }
@@ -72,10 +62,9 @@ mod tests {
     fn a_start_and_a_stop_make_friction_uncertain() {
         let mut errors = FrictionErrors::new(1);
         let mut after = |v: f64, ticks: usize| {
-            (0..ticks).for_each(|_| errors.advance(&[v], true, 1e-3));
+            (0..ticks).for_each(|_| errors.advance(&[v], 1e-3));
             errors.shares()[0]
         };
-        assert_eq!(after(0.01, 3000), CREEPING);
         assert_eq!(after(0.0, 3000), AT_REST);
         assert_eq!(after(0.5, 1), 1.0);
         assert!(after(0.5, 1000) < 0.03);

@@ -56,7 +56,6 @@ pub struct MomentumObserver {
     /// `tau_m - tau_f`.
     motor_torque: Vec<f64>,
     velocity: Vec<f64>,
-    velocity_is_known: bool,
     total_torque: Vec<f64>,
     acceleration: Vec<f64>,
     acceleration_is_current: bool,
@@ -93,7 +92,6 @@ impl MomentumObserver {
             unexplained: zeros.clone(),
             motor_torque: zeros.clone(),
             velocity: zeros.clone(),
-            velocity_is_known: true,
             total_torque: zeros.clone(),
             acceleration: zeros,
             acceleration_is_current: true,
@@ -132,7 +130,6 @@ impl MomentumObserver {
         std::mem::swap(&mut self.momentum, &mut self.momentum_before);
         std::mem::swap(&mut self.known_rate, &mut self.known_rate_before);
         self.velocity.copy_from_slice(v);
-        self.velocity_is_known = true;
         spread_torque(tau, &mut self.motor_torque);
         if let Some(calibration) = &mut self.calibration {
             if !self.started {
@@ -168,7 +165,6 @@ impl MomentumObserver {
             Some(v) => self.velocity.copy_from_slice(v),
             None => self.velocity.fill(0.0),
         }
-        self.velocity_is_known = sample.v.is_some();
         self.kinematics.set_configuration(&self.robot, sample.q);
         self.kinematics.set_velocity(&self.robot, &self.velocity);
         self.unexplained.copy_from_slice(&self.external_torque);
@@ -209,11 +205,6 @@ impl MomentumObserver {
     /// The corrected velocity `(nv,)` of the last step.
     pub(crate) fn velocity(&self) -> &[f64] {
         &self.velocity
-    }
-
-    /// Whether it was given: zeros stand for a velocity that was not.
-    pub(crate) fn velocity_is_known(&self) -> bool {
-        self.velocity_is_known
     }
 
     /// Forgets all steps; the next call is a first call.
