@@ -58,10 +58,8 @@ pub(crate) struct ContactTest {
     next: usize,
     started: bool,
     without_bias: Vec<f64>,
-    /// The torque that slow errors are followed by, without what is free.
-    followed: Vec<f64>,
-    /// The same of a faster observer, which has soon forgotten a contact that has ended.
-    prompt: Vec<f64>,
+    /// By signal: the torque without what is free, but with the bias.
+    shown: Vec<Vec<f64>>,
     /// By velocity variable: over one where the joint is over its own threshold.
     joints: Vec<f64>,
     suspicious: bool,
@@ -101,8 +99,7 @@ impl ContactTest {
             next: 0,
             started: false,
             without_bias: vec![0.0; nv],
-            followed: vec![0.0; nv],
-            prompt: vec![0.0; nv],
+            shown: vec![vec![0.0; nv]; levels.len()],
             joints: vec![0.0; nv],
             suspicious: false,
             recent: RecentTorque::new(nv),
@@ -124,7 +121,8 @@ impl ContactTest {
     ) -> Self {
         let signal = Signal::new(variances, gain, Order::First, dt, level.level, level.gaussian);
         let test = ContactTest::new(robot, variances, dt, &[], model_errors, follow_time);
-        ContactTest { bank: None, signals: vec![signal], ..test }
+        let shown = vec![vec![0.0; gain.len()]];
+        ContactTest { bank: None, signals: vec![signal], shown, ..test }
     }
 
     /// A step to a pose and velocities `(nv,)`, the external torque before any low-pass; none where the step told nothing
@@ -165,8 +163,7 @@ impl ContactTest {
         if in_contact && free.is_none() {
             self.forget_what_fell();
         }
-        let Self { bank, signals, slow, without_bias, followed, prompt, joints, .. } = self;
-        let last = signals.len() - 1;
+        let Self { bank, signals, slow, without_bias, shown, joints, .. } = self;
         self.suspicious = false;
         joints.fill(0.0);
         let first = usize::from(bank.is_some());
@@ -176,16 +173,8 @@ impl ContactTest {
                 *value = torque - bias;
             }
             signal.evaluate(without_bias, first + which, free.as_deref_mut());
-            let keep = |torque: &mut [f64]| {
-                for ((torque, left), bias) in torque.iter_mut().zip(&*without_bias).zip(slow.bias()) {
-                    *torque = left + bias;
-                }
-            };
-            if which == 0 {
-                keep(followed);
-            }
-            if which == PROMPT.min(last) {
-                keep(prompt);
+            for ((shown, left), bias) in shown[which].iter_mut().zip(&*without_bias).zip(slow.bias()) {
+                *shown = left + bias;
             }
             self.suspicious |= signal.statistic > SUSPICIOUS * signal.level;
             if signal.statistic <= share * signal.level {
@@ -228,11 +217,12 @@ impl ContactTest {
     /// A step of `dt` (s): slow errors are followed, or not where something may touch the robot.
     #[inline]
     pub fn follow(&mut self, dt: f64, touched: bool) {
-        self.recent.advance(&self.followed, dt, touched);
+        let Some(slowest) = self.shown.first() else { return };
+        self.recent.advance(slowest, dt, touched);
         if touched || self.payload.settling() {
-            self.slow.lose(&self.followed, dt);
+            self.slow.lose(slowest, dt);
         } else {
-            self.slow.follow(&self.followed, dt);
+            self.slow.follow(slowest, dt);
         }
     }
 
@@ -245,16 +235,18 @@ impl ContactTest {
         self.started = false;
     }
 
-    /// What a contact does to the torque behind the slowest observer, and the standard deviations of its errors: since just
-    /// before the contact where that is known, and else without bias.
+    /// What a contact does to the torque behind the observer that shows it most clearly, and the standard deviations of its errors:
+    /// since just before the contact where that is known, and else without bias.
     pub fn contact_signal(&mut self) -> (&[f64], &[f64]) {
-        let Self { signals, slow, without_bias, followed, recent, velocity, friction, deviations, .. } = self;
+        let Self { signals, slow, without_bias, shown, recent, velocity, friction, deviations, .. } = self;
+        let clear = |(signal, _): &(&Signal, &Vec<f64>)| signal.statistic / signal.level;
+        let clearest = signals.iter().zip(&*shown).max_by(|a, b| clear(a).total_cmp(&clear(b)));
+        let Some((signal, torque)) = clearest else { return (without_bias, deviations) };
         let before = recent.before();
         let bias = before.map_or(slow.bias(), |(torque, _)| torque);
-        for ((value, torque), bias) in without_bias.iter_mut().zip(&*followed).zip(bias) {
+        for ((value, torque), bias) in without_bias.iter_mut().zip(torque).zip(bias) {
             *value = torque - bias;
         }
-        let Some(signal) = signals.first() else { return (without_bias, deviations) };
         for (i, deviation) in deviations.iter_mut().enumerate() {
             let share = signal.model_share(i);
             let slow = match before {
@@ -268,7 +260,7 @@ impl ContactTest {
 
     /// The torque that tells when a contact has ended.
     pub fn prompt(&self) -> &[f64] {
-        &self.prompt
+        self.shown.get(PROMPT).or(self.shown.first()).map_or(&[], |torque| torque)
     }
 
     /// The gains of the bank, slow to fast (1/s); none without one.
