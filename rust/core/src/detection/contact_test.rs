@@ -331,3 +331,70 @@ impl ContactTest {
 
 /// The largest share must lie over the threshold.
 const ALMOST: f64 = 0.999;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::torque::NoiseModel;
+
+    const DT: f64 = 1e-3;
+
+    /// Of an arm with noise of all kinds, in a pose without motion.
+    struct Scene {
+        test: ContactTest,
+        kinematics: Kinematics,
+    }
+
+    impl Scene {
+        fn new() -> Self {
+            let robot = Arc::new(Robot::example_arm());
+            let noise = NoiseModel {
+                torque: vec![0.05],
+                velocity: vec![2e-3],
+                model: vec![0.05],
+                ..NoiseModel::default()
+            };
+            let variances = noise.variances(&robot).expect("valid");
+            let levels = GAINS.map(|gain| Level { gain, level: 40.0, gaussian: 40.0 });
+            let test = ContactTest::new(Arc::clone(&robot), &variances, DT, &levels, &[], FOLLOW_TIME);
+            let mut kinematics = Kinematics::new(&robot);
+            kinematics.set_configuration(&robot, &[0.3, 0.8, -0.4, 0.9, 0.5, 0.7, 0.2]);
+            Scene { test, kinematics }
+        }
+
+        /// So many ticks with a torque on the fourth joint (Nm).
+        fn run(&mut self, ticks: usize, torque: f64, touched: bool) {
+            let mut unexplained = [0.0; 7];
+            unexplained[3] = torque;
+            for _ in 0..ticks {
+                self.test.advance(&self.kinematics, &[0.0; 7], Some(&unexplained), Step::Nominal);
+                self.test.evaluate(&[], touched, None);
+                self.test.follow(DT, touched);
+            }
+        }
+    }
+
+    #[test]
+    fn a_contact_is_read_from_a_fast_observer_at_first_and_from_a_slow_one_later() {
+        let mut scene = Scene::new();
+        scene.run(3000, 0.0, false);
+        scene.run(20, 5.0, true);
+        let (torque, deviation) = scene.test.contact_signal();
+        let (early, uncertain) = (torque[3], deviation[3]);
+        // The slowest observer holds 4 % of it yet.
+        assert!(early > 2.5, "{early}");
+        scene.run(1000, 5.0, true);
+        let (torque, deviation) = scene.test.contact_signal();
+        assert!((torque[3] - 5.0).abs() < 0.01 && deviation[3] < uncertain, "{torque:?} {deviation:?}");
+    }
+
+    #[test]
+    fn the_end_of_a_contact_shows_before_the_slowest_observer_has_forgotten_it() {
+        let mut scene = Scene::new();
+        scene.run(3000, 0.0, false);
+        scene.run(500, 2.0, true);
+        let held = scene.test.prompt()[3];
+        scene.run(60, 0.0, true);
+        assert!((held - 2.0).abs() < 0.01 && scene.test.prompt()[3] < 0.05, "{held}");
+    }
+}
