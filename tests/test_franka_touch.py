@@ -282,11 +282,7 @@ def test_the_command_line_finds_the_contacts_of_the_study(
     (expected,) = [log for log in real.calibrated.logs if log.name == name]
     external = ["--external", "--torque-constants=-1"]
     contacts = replayed(name, capsys, *external, "--calibration", calibration)
-    # A contact begins with its onset, or a row later where the torque does not yet tell a place.
-    late = np.array([contact["start"] for contact in contacts]) - onsets(expected)
-    row = float(np.median(np.diff(next(log for log in real.logs if log.name == name).time)))
-    assert ((late > -1e-9) & (late < 1.1 * row)).all()
-    assert (late < 1e-9).sum() >= len(late) - 1
+    assert [contact["start"] for contact in contacts] == pytest.approx(onsets(expected), abs=1e-9)
     robot = study.panda()
     links = [link_number(robot, contact["link"]) for contact in contacts]
     assert links == [touch.link for touch in expected.touches]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -46,6 +47,9 @@ class Collector:
         self._episodes = 0
         # Of contacts that the monitor does not follow: by episode and place in the report.
         self._unnamed: dict[tuple[int, int], int] = {}
+        # The row of each onset, and of each contact's begin; the last episode with a contact.
+        self._onsets, self._begins = array("q"), dict[int, int]()
+        self._filled = 0
 
     def add(
         self,
@@ -66,6 +70,7 @@ class Collector:
         self._significance[rows] = significance
         self._external[rows] = external.reshape(-1, self._external.shape[1])
         episodes = self._episodes + np.cumsum(onset)
+        self._onsets.extend(rows.start + np.flatnonzero(onset))
         self._last |= {which: each for _, which, _, each in classes}
         placed = {(row, place): (which, each) for row, which, place, each in classes if place is not None}
         for row, several in contacts:
@@ -79,6 +84,11 @@ class Collector:
         number = contact.id
         if number is None:
             number = self._unnamed.setdefault(unnamed, len(self._unnamed))
+        episode, _ = unnamed
+        # The first contact of an episode began with it: its first ticks may not tell a place yet.
+        begin = self._onsets[episode - 1] if episode > self._filled else row
+        self._begins.setdefault(number, begin)
+        self._filled = episode
         self._rows.append(row)
         self._ids.append(number)
         self._links.append(contact.link)
@@ -111,7 +121,10 @@ class Collector:
             "external_torque": self._external[done],
         }
         columns = self._columns()
-        contacts = contacts_of(columns, self._final_classes())
+        contacts = tuple(
+            replace(contact, start=float(self._log.time[self._begins[contact.id]]))
+            for contact in contacts_of(columns, self._final_classes())
+        )
         return Replay(self._log, self._robot, ticks, columns, contacts, interrupted, self._sensors)
 
     def _final_classes(self) -> dict[int, _core.ContactClass] | None:

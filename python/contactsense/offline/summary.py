@@ -22,7 +22,7 @@ class ReplayedContact:
 
     Args:
         id: which contact it is: the monitor's number.
-        start: time of its first tick, as the log's [s].
+        start: time of its onset, as the log's [s].
         end: time of its last tick [s].
         link: the likeliest link.
         link_probability: of that link; NaN where the monitor works out no posterior.
