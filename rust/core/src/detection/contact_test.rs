@@ -125,7 +125,7 @@ impl ContactTest {
         ContactTest { bank: None, signals: vec![signal], shown, ..test }
     }
 
-    /// A step to a pose and velocities `(nv,)`, the external torque before any low-pass; none where the step told nothing
+    /// A step to a pose and velocities `(nv,)`, with the external torque before any low-pass; none where the step told nothing
     /// of it.
     #[inline]
     pub fn advance(&mut self, kinematics: &Kinematics, v: &[f64], unexplained: Option<&[f64]>, step: Step) {

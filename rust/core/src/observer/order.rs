@@ -1,5 +1,7 @@
 //! Low-passes of an external torque: of first order as a momentum observer is one, or of second order.
 
+use crate::torque::NoiseModel;
+
 /// How many low-passes are in series. Two of twice the gain delay as much as one, and leave far less of the white noise of the momentum,
 /// which one passes at each sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,8 +21,7 @@ impl Order {
 
     /// What is left of the variance of errors that change over `time` (s).
     pub fn slow_share(self, gain: f64, time: f64) -> f64 {
-        let pole = self.pole(gain);
-        let once = pole * time / (1.0 + pole * time);
+        let once = NoiseModel::model_share(self.pole(gain), time);
         match self {
             Order::First => once,
             Order::Second => 0.5 * once * (1.0 + once),
