@@ -56,6 +56,21 @@ def test_moves_are_smooth_within_limits_and_clear_of_the_floor(name: str) -> Non
             assert (robot.surface(link).vertices @ pose[2, :3] + pose[2, 3]).min() > -0.02
 
 
+def test_trapezoidal_moves_accelerate_go_on_and_brake() -> None:
+    motion = sim.random_moves(IIWA, 20.0, dt=1e-3, profile="trapezoidal", rest=(0.3, 0.5), seed=4)
+    np.testing.assert_allclose(
+        np.diff(motion.q, axis=0) / 1e-3, 0.5 * (motion.v[1:] + motion.v[:-1]), atol=2e-3
+    )
+    joint = int(np.abs(motion.v).max(axis=0).argmax())
+    jumps = np.flatnonzero(np.abs(np.diff(motion.a[:, joint])) > 0.02)
+    smooth = np.setdiff1d(np.arange(len(motion) - 1), np.concatenate([jumps - 1, jumps, jumps + 1]))
+    np.testing.assert_allclose(np.diff(motion.v[:, joint])[smooth], 1e-3 * motion.a[smooth, joint], atol=1e-9)
+    first = motion.time[jumps[:4]]
+    # A third of the time each, and no speed left at the end.
+    np.testing.assert_allclose(np.diff(first), (first[3] - first[0]) / 3.0, atol=2e-3)
+    assert not motion.v[[jumps[0], jumps[3] + 1]].any()
+
+
 @pytest.mark.parametrize("name", parameters(["iiwa14", "panda", "ur5"]))
 def test_links_that_are_far_apart_in_the_chain_do_not_touch(name: str) -> None:
     robot = robot_named(name)
@@ -226,6 +241,7 @@ def test_what_does_not_fit_the_robot_is_refused() -> None:
         ({"seed": 0.5}, "seed"),
         ({"speed": (0.5, 1.5)}, "speed"),
         ({"floor": 5.0}, "floor"),
+        ({"profile": "s-curve"}, "profile"),
     ):
         with pytest.raises(cs.InputError, match=name):
             sim.random_moves(IIWA, **{"seconds": 2.0, **options})  # type: ignore[arg-type]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 
 from contactsense import Robot
@@ -10,9 +12,8 @@ from contactsense.errors import InputError
 from ._arrays import FloatArray, positive, whole
 from .clearance import Clearance
 from .joint_motion import JointAngles, JointMotion
+from .move_profile import profile_of
 
-# Peak speed and acceleration of a quintic move of length 1 in time 1.
-_PEAK_SPEED, _PEAK_ACCELERATION = 1.875, 5.7735
 # Arms reach their top speed in about this time [s].
 _SPEED_UP = 0.4
 # A move of a slow arm goes less far, so that there are several in a scene [s].
@@ -34,9 +35,10 @@ def random_moves(
     speed: tuple[float, float] = (0.15, 0.6),
     rest: tuple[float, float] = (0.2, 3.0),
     floor: float | None = 0.0,
+    profile: Literal["quintic", "trapezoidal"] = "quintic",
     seed: int = 0,
 ) -> JointMotion:
-    """Smooth point-to-point moves (quintic: at rest and without acceleration at either end) and rests.
+    """Point-to-point moves, all joints in step, and rests between them.
 
     Poses are within the position limits; the arm touches neither itself nor the floor, as far as convex hulls
     at poses along the way tell.
@@ -48,6 +50,9 @@ def random_moves(
         speed: of a move, as a share of the velocity limits; uniform between the two.
         rest: after a move [s]; uniform between the two.
         floor: height of the ground [m]; None: there is none.
+        profile: of the speed over a move. "quintic": smooth, without acceleration at either end.
+            "trapezoidal": constant acceleration, constant speed, constant deceleration, a third of the time
+            each, as many industrial controllers plan; the acceleration jumps four times a move.
         seed: same seed, same motion.
 
     Raises:
@@ -58,6 +63,7 @@ def random_moves(
     whole("seed", seed)
     ordered("speed", speed, 1.0)
     ordered("rest", rest, np.inf, zero=True)
+    shape = profile_of(profile)
     if seconds < 2.0 * dt:
         raise InputError(f"seconds: must be two ticks or more, not {seconds}")
     rng = np.random.default_rng([seed, 2])
@@ -74,18 +80,18 @@ def random_moves(
         way = _way(rng, angles_of, clearance, here, low, high)
         share = rng.uniform(*speed)
         at_full_speed = np.abs(way) / (share * limits)
-        way *= min(1.0, _LONGEST_MOVE / max(_PEAK_SPEED * float(at_full_speed.max()), dt))
+        way *= min(1.0, _LONGEST_MOVE / max(shape.peak_speed * float(at_full_speed.max()), dt))
         at_full_speed = np.abs(way) / (share * limits)
         duration = max(
-            _PEAK_SPEED * float(at_full_speed.max()),
-            float(np.sqrt(_PEAK_ACCELERATION * _SPEED_UP * at_full_speed.max())),
+            shape.peak_speed * float(at_full_speed.max()),
+            float(np.sqrt(shape.peak_acceleration * _SPEED_UP * at_full_speed.max())),
         )
         # A move and the rest after it; a way of zero is a rest as well.
         rows = slice(row, row + max(2, round((duration + rng.uniform(*rest)) / dt)))
         x = np.clip((time[rows] - time[row]) / max(duration, dt), 0.0, 1.0)[:, None]
-        angles[rows] = here + way * x**3 * (10.0 + x * (-15.0 + 6.0 * x))
-        v[rows] = way * 30.0 * (x * (1.0 - x)) ** 2 / max(duration, dt)
-        a[rows] = way * 60.0 * x * (1.0 - x) * (1.0 - 2.0 * x) / max(duration, dt) ** 2
+        angles[rows] = here + way * shape.position(x)
+        v[rows] = way * shape.speed(x) / max(duration, dt)
+        a[rows] = way * shape.acceleration(x) / max(duration, dt) ** 2
         here = here + way
         row = rows.stop
     return JointMotion(time, angles_of.write(angles), v, a)
