@@ -26,14 +26,20 @@ def executed() -> nbformat.NotebookNode:
 
 def said(notebook: nbformat.NotebookNode) -> list[list[str]]:
     """What each cell printed, without numbers, and the kinds of its pictures."""
-    cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
-    return [[_said(output) for output in cell.outputs] for cell in cells]
+    return [_said(cell.outputs) for cell in notebook.cells if cell.cell_type == "code"]
 
 
-def _said(output: nbformat.NotebookNode) -> str:
-    if output.output_type == "stream":
-        return f"{output.name}: {re.sub(r'[-+ ]*[0-9][0-9.]*', '#', output.text)}"
-    return " ".join(sorted(output.data))
+def _said(outputs: list[nbformat.NotebookNode]) -> list[str]:
+    """One text a stream between two pictures, since the kernel may send what is printed in several parts."""
+    told: list[list[str]] = []
+    for output in outputs:
+        if output.output_type != "stream":
+            told.append(["picture", " ".join(sorted(output.data))])
+        elif told and told[-1][0] == output.name:
+            told[-1][1] += output.text
+        else:
+            told.append([output.name, output.text])
+    return [f"{kind}: {re.sub(r'[-+ ]*[0-9][0-9.]*', '#', text)}" for kind, text in told]
 
 
 def main() -> int:
