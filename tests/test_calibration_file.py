@@ -150,9 +150,9 @@ def test_the_order_of_joints_and_links_in_the_file_does_not_matter(tmp_path: Pat
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("format: 3", "format: 2", "format: .*reads format 3, not 2; calibrate anew"),
-        ("format: 3\n", "", "format .* is missing"),
-        ("format: 3\n", "format: true\n", "not true"),
+        ("format: 4", "format: 3", "format: .*reads format 4, not 3; calibrate anew"),
+        ("format: 4\n", "", "format .* is missing"),
+        ("format: 4\n", "format: true\n", "not true"),
         ("torque_is_external: false", "torque_is_external: maybe", "torque_is_external: .*true or false"),
         ("velocity_delay: 0.004", "velocity_delay: -0.1", "velocity_delay: must be .*not negative.*-0.1"),
         ("velocity_delay: 0.004", "velocity_delay: .nan", "velocity_delay: must be a finite"),

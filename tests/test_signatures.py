@@ -26,7 +26,7 @@ SIGNATURES = {
     "ToolLoad.to_dict": "",
     "LoadCompensator.update": "q, v, a, wrenches",
     "NoiseModel": "*, torque=0.05, velocity=0.0, relative=0.03, model=0.1, model_time=1.0, "
-    "friction=0.0, bias=0.0",
+    "friction=0.0, bias=0.0, position_step=0.0",
     "calibrate": "robot, log, *, false_alarms_per_hour=1.0, payload_link=None",
     "read_log": "path, robot, *, columns=None, topics=None, units=None, torque_constants=None, "
     "external=False, rate=None, sensors=()",

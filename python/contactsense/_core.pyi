@@ -504,7 +504,8 @@ class MomentumObserver:
         dt: Time between two calls [s].
         gain: Scalar or `(nv,)` [1/s].
         calibration: A `Calibration` of this robot: velocities and torques are corrected, and inertias are those that its
-            motion showed.
+            motion showed. Torques, velocities and the pose are those of one time, when the latest of the measured signals
+            was what it is (`velocity_delay`, `torque_delay`).
 
     Raises:
         InputError: Names the argument.
@@ -1142,14 +1143,17 @@ class NoiseModel:
         model_time: Time over which these change, scalar or `(nv,)` [s].
         friction: Errors of friction while a joint starts, stops or turns round, scalar or `(nv,)` [Nm; N for sliding joints].
         bias: What the bias differs by from one start to the next, scalar or `(nv,)` [Nm; N for sliding joints].
+        position_step: Step between two positions that an encoder counts, scalar or `(nv,)` [rad; m for sliding joints]; no
+            standard deviation. A joint that starts to move within it still seems to stand.
 
     Raises:
         InputError: Names the argument.
 
     Example:
         >>> import contactsense as cs
-        >>> cs.NoiseModel(model=0.2)
-        NoiseModel(torque=0.05, velocity=0.0, relative=0.03, model=0.2, model_time=1.0, friction=0.0, bias=0.0)
+        >>> noise = cs.NoiseModel(model=0.2)
+        >>> noise.torque, noise.model
+        (0.05, 0.2)
     """
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
@@ -1163,6 +1167,7 @@ class NoiseModel:
         model_time: ArrayLike = 1.0,
         friction: ArrayLike = 0.0,
         bias: ArrayLike = 0.0,
+        position_step: ArrayLike = 0.0,
     ) -> Self: ...
     @property
     def torque(self) -> float | NDArray[np.float64]:
@@ -1182,6 +1187,9 @@ class NoiseModel:
     @property
     def bias(self) -> float | NDArray[np.float64]:
         """What the bias differs by from one start to the next [Nm; N for sliding joints]: a number or `(nv,)`; a read-only copy."""
+    @property
+    def position_step(self) -> float | NDArray[np.float64]:
+        """Step between two positions that an encoder counts [rad; m for sliding joints]: a number or `(nv,)`; a read-only copy."""
     @property
     def model_time(self) -> float | NDArray[np.float64]:
         """Time over which slow errors change [s]: a number or `(nv,)`; a read-only copy."""

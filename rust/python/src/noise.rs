@@ -26,14 +26,17 @@ use crate::robot_argument::robot;
 ///     model_time: Time over which these change, scalar or `(nv,)` [s].
 ///     friction: Errors of friction while a joint starts, stops or turns round, scalar or `(nv,)` [Nm; N for sliding joints].
 ///     bias: What the bias differs by from one start to the next, scalar or `(nv,)` [Nm; N for sliding joints].
+///     position_step: Step between two positions that an encoder counts, scalar or `(nv,)` [rad; m for sliding joints]; no
+///         standard deviation. A joint that starts to move within it still seems to stand.
 ///
 /// Raises:
 ///     InputError: Names the argument.
 ///
 /// Example:
 ///     >>> import contactsense as cs
-///     >>> cs.NoiseModel(model=0.2)
-///     NoiseModel(torque=0.05, velocity=0.0, relative=0.03, model=0.2, model_time=1.0, friction=0.0, bias=0.0)
+///     >>> noise = cs.NoiseModel(model=0.2)
+///     >>> noise.torque, noise.model
+///     (0.05, 0.2)
 #[pyclass(frozen, eq, skip_from_py_object, name = "NoiseModel", module = "contactsense")]
 #[derive(PartialEq, Clone)]
 pub struct PyNoiseModel(pub NoiseModel);
@@ -50,8 +53,8 @@ pub fn values<'py>(py: Python<'py>, given: &[f64]) -> PyResult<Bound<'py, PyAny>
 impl PyNoiseModel {
     #[new]
     #[pyo3(signature = (*, torque=None, velocity=None, relative=None, model=None, model_time=None,
-                        friction=None, bias=None),
-           text_signature = "(*, torque=0.05, velocity=0.0, relative=0.03, model=0.1, model_time=1.0, friction=0.0, bias=0.0)")]
+                        friction=None, bias=None, position_step=None),
+           text_signature = "(*, torque=0.05, velocity=0.0, relative=0.03, model=0.1, model_time=1.0, friction=0.0, bias=0.0, position_step=0.0)")]
     #[allow(clippy::too_many_arguments)] // the keywords of the Python class
     fn new(
         py: Python<'_>,
@@ -62,6 +65,7 @@ impl PyNoiseModel {
         model_time: Option<&Bound<'_, PyAny>>,
         friction: Option<&Bound<'_, PyAny>>,
         bias: Option<&Bound<'_, PyAny>>,
+        position_step: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let mut noise = NoiseModel::default();
         for (name, object, values) in [
@@ -72,6 +76,7 @@ impl PyNoiseModel {
             ("model_time", model_time, &mut noise.model_time),
             ("friction", friction, &mut noise.friction),
             ("bias", bias, &mut noise.bias),
+            ("position_step", position_step, &mut noise.position_step),
         ] {
             if let Some(object) = object {
                 *values = scalar_or_vector(name, object)?;
@@ -123,15 +128,20 @@ impl PyNoiseModel {
         values(py, &self.0.bias)
     }
 
+    /// Step between two positions that an encoder counts [rad; m for sliding joints]: a number or `(nv,)`; a read-only copy.
+    #[getter]
+    fn position_step<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        values(py, &self.0.position_step)
+    }
+
     /// All attributes by name.
     ///
     /// Returns:
     ///     Plain Python values: numbers, and lists in place of arrays.
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
-        plain_dict(
-            slf.as_any(),
-            &["torque", "velocity", "relative", "model", "model_time", "friction", "bias"],
-        )
+        let names =
+            ["torque", "velocity", "relative", "model", "model_time", "friction", "bias", "position_step"];
+        plain_dict(slf.as_any(), &names)
     }
 
     /// Covariance of the external torque of the untouched robot behind an observer.
@@ -200,13 +210,14 @@ impl PyNoiseModel {
             [value] => format!("{value:?}"),
             _ => format!("{values:?}"),
         };
-        let NoiseModel { torque, velocity, relative, model, model_time, friction, bias } = &self.0;
+        let NoiseModel { torque, velocity, relative, model, model_time, friction, bias, position_step } =
+            &self.0;
         let [torque, velocity, relative] = [torque, velocity, relative].map(|x| shown(x));
         let [model, model_time] = [model, model_time].map(|x| shown(x));
-        let [friction, bias] = [friction, bias].map(|x| shown(x));
+        let [friction, bias, position_step] = [friction, bias, position_step].map(|x| shown(x));
         format!(
             "NoiseModel(torque={torque}, velocity={velocity}, relative={relative}, model={model}, \
-             model_time={model_time}, friction={friction}, bias={bias})"
+             model_time={model_time}, friction={friction}, bias={bias}, position_step={position_step})"
         )
     }
 }

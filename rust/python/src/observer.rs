@@ -25,7 +25,8 @@ use crate::robot_argument::robot;
 ///     dt: Time between two calls [s].
 ///     gain: Scalar or `(nv,)` [1/s].
 ///     calibration: A `Calibration` of this robot: velocities and torques are corrected, and inertias are those that its
-///         motion showed.
+///         motion showed. Torques, velocities and the pose are those of one time, when the latest of the measured signals
+///         was what it is (`velocity_delay`, `torque_delay`).
 ///
 /// Raises:
 ///     InputError: Names the argument.

@@ -68,7 +68,7 @@ pub(super) fn velocity_delay(robot: &Robot, log: &Log<'_>, step: f64) -> [f64; 2
 }
 
 /// How far a joint moved.
-fn displacement(kind: JointKind, q: &[f64], before: &[f64]) -> f64 {
+pub(super) fn displacement(kind: JointKind, q: &[f64], before: &[f64]) -> f64 {
     match kind {
         JointKind::Continuous => {
             let (cos, sin) = (q[0] * before[0] + q[1] * before[1], q[1] * before[0] - q[0] * before[1]);

@@ -16,8 +16,10 @@ impl Calibration {
         let rate = self.false_alarms_per_hour / gains.len() as f64;
         let level = |gain: f64| {
             let gaussian = gaussian_level(nv, gain, dt, rate);
+            // A log holds less than later motion: what friction does in slow motion, for one. Its tail does not lower the level.
             let tail = self.tails.iter().find(|tail| tail.gain == gain);
-            Level { gain, level: gaussian.max(tail.map_or(0.0, |tail| tail.at(rate))), gaussian }
+            let level = tail.map_or(gaussian, |tail| tail.at(rate).max(gaussian));
+            Level { gain, level, gaussian }
         };
         gains.into_iter().map(level).collect()
     }
@@ -31,5 +33,30 @@ impl Calibration {
         let widened = |tail: &Tail| tail.at(rate) / gaussian_level(nv, tail.gain, dt, rate);
         let widest = self.tails.iter().map(widened).fold(1.0, f64::max);
         Level { gain: fastest, level: gaussian * widest, gaussian }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::Robot;
+
+    #[test]
+    fn the_level_is_what_the_log_shows_and_no_less_than_the_gaussian_one() {
+        let described = Calibration::of_description(&Robot::example_arm());
+        let with = |level: f64, scale: f64| {
+            let tails = vec![Tail { gain: 8.0, level, scale }, Tail { gain: 50.0, level, scale }];
+            Calibration { tails, ..described.clone() }.levels(7, 1e-3)
+        };
+        let gaussian = with(1.0, 1e-3)[0].gaussian;
+        for (level, scale, expected) in [(60.0, 2.0, None), (1.0, 1e-3, Some(1.0)), (200.0, 1.0, None)] {
+            let found = with(level, scale)[0];
+            let tail = Tail { gain: 8.0, level, scale };
+            let expected =
+                expected.map_or(tail.at(0.5 * described.false_alarms_per_hour), |share| share * gaussian);
+            assert!((found.level - expected).abs() < 1e-9 && found.gaussian == gaussian, "{level}");
+        }
+        let without = Calibration { tails: vec![], ..described }.levels(7, 1e-3);
+        assert!(without.len() == 3 && without.iter().all(|level| level.level == level.gaussian));
     }
 }

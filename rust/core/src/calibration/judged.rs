@@ -24,6 +24,8 @@ pub(super) struct Judged {
 pub(super) struct Told<'a> {
     pub kinematics: &'a Kinematics,
     pub velocity: &'a [f64],
+    /// The rate of the momentum without external torque; none where torques are external ones.
+    pub known_rate: Option<&'a [f64]>,
     /// The external torque before any low-pass; none in the first row of a stretch.
     pub unexplained: Option<&'a [f64]>,
     /// Since the row before (s).
@@ -44,6 +46,7 @@ impl Judged {
         let source = self.robot.as_ref().unwrap_or(robot);
         let mut observer = MomentumObserver::new(Arc::clone(source), step, &[GAIN])?;
         let mut torque = self.torque.clone();
+        let mut q = vec![0.0; robot.nq()];
         let (mut v, mut tau) = (vec![0.0; robot.nv()], vec![0.0; robot.nv()]);
         let mut starts = true;
         for index in self.rows.clone() {
@@ -58,12 +61,22 @@ impl Judged {
             tau.copy_from_slice(log.tau_of(index));
             v.copy_from_slice(log.v_of(robot, index));
             torque.correct(if starts { 0.0 } else { dt }, &mut v, &mut tau);
-            observer.advance(&Sample::new(log.q_of(robot, index), &v, &tau), Step::Of(dt));
+            q.copy_from_slice(log.q_of(robot, index));
+            robot.advance_configuration(&mut q, &v, -torque.delay());
+            observer.advance(&Sample::new(&q, &v, &tau), Step::Of(dt));
             let unexplained = match self.robot {
                 Some(_) => observer.unexplained(),
                 None => Some(&tau[..]).filter(|_| !starts),
             };
-            told(&Told { kinematics: observer.kinematics(), velocity: &v, unexplained, dt, starts });
+            let known_rate = self.robot.as_ref().and_then(|_| observer.known_rate());
+            told(&Told {
+                known_rate,
+                kinematics: observer.kinematics(),
+                velocity: &v,
+                unexplained,
+                dt,
+                starts,
+            });
             starts = false;
         }
         Ok(())

@@ -1,5 +1,6 @@
 //! What contact-free motion teaches of one robot: bias, friction, inertias, payload, delays and noise.
 
+mod alignment;
 mod calibrate;
 #[allow(clippy::module_inception)] // the room is called after what it makes
 mod calibration;
@@ -15,13 +16,14 @@ mod folds;
 mod friction;
 mod hysteresis;
 mod judged;
-mod lead;
 mod log;
 mod model_errors;
 mod noise;
 mod normal;
 mod notes;
+mod position_step;
 mod pseudo_inertia;
+mod rate;
 mod rest_errors;
 mod result;
 pub(crate) mod rows;

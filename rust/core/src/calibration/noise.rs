@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::judged::Judged;
 use super::log::Log;
+use super::position_step::position_steps;
 use crate::detection::{Standstill, LARGEST_STEP};
 use crate::error::Result;
 use crate::observer::{ObserverBank, Order, Step};
@@ -108,7 +109,8 @@ pub(super) fn estimate(
         (0..nv).map(|j| white_velocity(|k| log.v_of(robot, k)[j], log.time, step)).collect();
     let least: Vec<f64> = velocity.iter().map(|[least, _]| *least).collect();
     let spread = spread(robot, log, parts, skipped, step, Standstill::new(&least))?;
-    Ok(split(&spread, torque, &velocity, step))
+    let noise = split(&spread, torque, &velocity, step);
+    Ok(NoiseModel { position_step: position_steps(robot, log), ..noise })
 }
 
 fn spread(

@@ -9,8 +9,8 @@ use super::judged::Judged;
 use super::log::Log;
 use super::noise::SMALLEST;
 use crate::detection::{
-    gaussian_level, ContactTest, FrictionErrors, Level, Standstill, Tail, WhiteNoise, WhiteShares,
-    FOLLOW_TIME, GAINS, LARGEST_STEP, PEAK_TIME, SLOW,
+    gaussian_level, ContactTest, FrictionErrors, Level, Standstill, Tail, WhiteShares, FOLLOW_TIME, GAINS,
+    LARGEST_STEP, PEAK_TIME, SLOW,
 };
 use crate::error::Result;
 use crate::observer::{ObserverBank, Order, Step};
@@ -25,11 +25,14 @@ const SETTLED: f64 = 1.0;
 const EVENT_TIME: f64 = 0.15;
 /// against what it was this long before (s).
 const BEFORE_TIME: f64 = 0.08;
-/// A joint that started and stopped less often keeps this share of its Coulomb friction as the error.
+/// A joint that started and stopped less often tells nothing of its friction there.
 const FEWEST_EVENTS: usize = 4;
-const UNKNOWN_SHARE: f64 = 0.2;
-/// Friction at a start or stop is never known better than to this share of it.
-const KNOWN_SHARE: f64 = 0.1;
+/// Friction at a start or stop is never known better than to this share of it, since joints of a log turn round faster than they stop;
+const KNOWN_SHARE: f64 = 0.2;
+/// and that of gears, which motor currents contain, to this one: slow, it is another by up to half, and depends on the load.
+const KNOWN_GEAR_SHARE: f64 = 0.5;
+/// A torque contains that of gears where Coulomb friction of all joints is more than this share of it.
+const OF_GEARS: f64 = 0.1;
 /// The errors of starts and stops are not Gaussian, and joints stop together: so many root mean squares count as one
 /// standard deviation.
 const HEAVY_TAIL: f64 = 1.5;
@@ -71,8 +74,11 @@ pub(super) fn rest_errors(
         (squares / log.len() as f64).sqrt()
     };
     noise.bias = (0..robot.nv()).map(|j| noise.relative[j] * rms(j)).collect();
+    let norm = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>().sqrt();
+    let all: Vec<f64> = (0..robot.nv()).map(rms).collect();
+    let known = if norm(coulomb) > OF_GEARS * norm(&all) { KNOWN_GEAR_SHARE } else { KNOWN_SHARE };
     if gains.is_empty() {
-        noise.friction = coulomb.iter().map(|coulomb| UNKNOWN_SHARE * coulomb).collect();
+        noise.friction = coulomb.iter().map(|coulomb| known * coulomb).collect();
         return Ok((noise, vec![]));
     }
     let mut stretches = vec![];
@@ -82,9 +88,9 @@ pub(super) fn rest_errors(
     }
     let shares: Vec<f64> = stretches.iter().flat_map(|stretch| stretch.moving.iter().copied()).collect();
     let moving = shares.iter().sum::<f64>() / f64::max(shares.len() as f64, 1.0);
-    let mut passed = WhiteNoise::new(gains[0], step, Order::Second).shares();
-    passed.velocity *= moving;
-    let white = white_variance(robot, log, parts, &noise, passed)?;
+    let mut passed = noise.variances(robot)?.white_noise(gains[0], step, Order::Second);
+    passed.advance(Some(step), moving);
+    let white = white_variance(robot, log, parts, &noise, passed.shares())?;
     let spacing = SPACING.max(step);
     let event_gain = gains[1.min(gains.len() - 1)];
     for (j, white) in white.into_iter().enumerate() {
@@ -102,8 +108,8 @@ pub(super) fn rest_errors(
             };
             let slow = shown(&|stretch| &stretch.slow, gains[0]);
             match slow.zip(shown(&|stretch| &stretch.fast, event_gain)) {
-                Some((slow, fast)) => (HEAVY_TAIL * slow.min(fast).sqrt()).max(KNOWN_SHARE * coulomb[j]),
-                None => UNKNOWN_SHARE * coulomb[j],
+                Some((slow, fast)) => (HEAVY_TAIL * slow.min(fast).sqrt()).max(known * coulomb[j]),
+                None => known * coulomb[j],
             }
         })
         .collect();
@@ -268,7 +274,7 @@ fn tails(
                 largest.fill(0.0);
                 (since, window) = (0.0, 0.0);
             }
-            test.advance(row.kinematics, row.velocity, row.unexplained, Step::Of(dt));
+            test.advance(row.kinematics, row.velocity, row.known_rate, row.unexplained, Step::Of(dt));
             test.evaluate(&[], false, None);
             test.follow(dt, row.starts || test.suspicious());
             since += dt;

@@ -7,8 +7,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::friction::Reversal;
 use super::hysteresis::Stops;
-use super::lead::Lead;
 use super::log::Log;
+use super::rate::Rate;
 use crate::robot::configuration::spread_torque;
 use crate::robot::{Kinematics, MomentumPass, MomentumRegressor, Robot};
 
@@ -25,7 +25,7 @@ pub(crate) enum Term {
     Armature,
     /// The measured torque.
     Torque,
-    /// Its rate, as [`Lead`] sees it.
+    /// Its rate, as [`Rate`] sees it.
     TorqueRate,
     /// What hysteresis keeps back of it for a share of one, with this first width in standard deviations of the torque.
     Hysteresis(f64),
@@ -69,7 +69,7 @@ pub(crate) fn rows(robot: &Robot, log: &Log<'_>, filter: &Filter, terms: &[Term]
     let mut state = Filtered::new(robot, terms, &torque_deviations(robot, log));
     let mut rows = vec![];
     let (mut started, mut last) = (f64::NAN, f64::NEG_INFINITY);
-    let (mut tau, mut rate) = (vec![0.0; nv], Lead::new(0.0, nv));
+    let (mut tau, mut rate) = (vec![0.0; nv], Rate::new(nv));
     for index in 0..log.len() {
         let v = log.v_of(robot, index);
         kinematics.set_configuration(robot, log.q_of(robot, index));
@@ -82,7 +82,7 @@ pub(crate) fn rows(robot: &Robot, log: &Log<'_>, filter: &Filter, terms: &[Term]
         spread_torque(log.tau_of(index), &mut tau);
         now.tau.copy_from_slice(&tau);
         let last_step = if index == 0 { 0.0 } else { log.time[index] - log.time[index - 1] };
-        rate.rates(last_step, &mut tau, |tau, rate| *tau = rate);
+        rate.advance(last_step, &mut tau);
         now.torque_rate.copy_from_slice(&tau);
         now.v.copy_from_slice(v);
         let time = log.time[index];

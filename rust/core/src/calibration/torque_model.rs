@@ -1,16 +1,15 @@
 //! From measured torques to those that move the links: scale, bias and friction of each joint, and delays.
 
+use super::alignment::Alignment;
 use super::friction::Reversal;
 use super::hysteresis::Stops;
-use super::lead::Lead;
 use super::Calibration;
 
 /// Corrects measured torques and velocities.
 #[derive(Debug, Clone)]
 pub(crate) struct TorqueModel {
     joints: Vec<Joint>,
-    velocity_lead: Lead,
-    torque_lead: Lead,
+    alignment: Alignment,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -41,9 +40,8 @@ impl TorqueModel {
             hysteresis: calibration.hysteresis[j],
             stops: Stops::new(calibration.hysteresis_width[j]),
         };
-        let delays = [calibration.velocity_delay, calibration.torque_delay];
-        let [velocity_lead, torque_lead] = delays.map(|delay| Lead::new(delay, scale.len()));
-        TorqueModel { joints: (0..scale.len()).map(joint).collect(), velocity_lead, torque_lead }
+        let alignment = Alignment::new(calibration.velocity_delay, calibration.torque_delay, scale.len());
+        TorqueModel { joints: (0..scale.len()).map(joint).collect(), alignment }
     }
 
     /// Forgets the signals of before.
@@ -52,22 +50,18 @@ impl TorqueModel {
             joint.share = 0.0;
             joint.stops.reset();
         }
-        self.velocity_lead.reset();
-        self.torque_lead.reset();
+        self.alignment.reset();
     }
 
-    /// The next step is one over a gap: rates of signals are not known from before it. Friction and what gears keep back are,
-    /// about: they depend on motion and load, not on time.
-    pub fn bridge_gap(&mut self) {
-        self.velocity_lead.reset();
-        self.torque_lead.reset();
+    /// How late the corrected signals are against the measured positions (s).
+    pub fn delay(&self) -> f64 {
+        self.alignment.delay()
     }
 
     /// Corrects `v` and `tau` in place, both `(nv,)`, after a step of `dt` (s; zero at the first).
     #[inline]
     pub fn correct(&mut self, dt: f64, v: &mut [f64], tau: &mut [f64]) {
-        self.velocity_lead.advance(dt, v);
-        self.torque_lead.advance(dt, tau);
+        self.alignment.advance(dt, v, tau);
         for ((joint, v), tau) in self.joints.iter_mut().zip(v).zip(tau) {
             joint.share = joint.reversal.share(joint.share, *v, dt);
             let friction = joint.coulomb * joint.share + joint.viscous * *v;
@@ -123,7 +117,6 @@ mod tests {
         assert!((0..10).map(|_| friction_at(-1.0)).last().unwrap().abs() < 1e-12);
         // Over a gap it is kept.
         assert!((friction_at(1.0) - 0.2).abs() < 1e-12);
-        model.bridge_gap();
         let mut tau = [0.0; 7];
         model.correct(1.0, &mut [0.0; 7], &mut tau);
         assert!((tau[0] + 0.2).abs() < 1e-12);

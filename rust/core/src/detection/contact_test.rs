@@ -10,6 +10,7 @@ use super::recent_torque::RecentTorque;
 use super::signal::Signal;
 use super::slow_errors::SlowErrors;
 use super::standstill::Standstill;
+use super::timing_errors::TimingErrors;
 use super::velocity_covariance::VelocityCovariance;
 use crate::math::chi_square::standard_deviations;
 use crate::observer::{ObserverBank, Order, Step};
@@ -49,6 +50,8 @@ pub(crate) struct ContactTest {
     /// None: the torque that is given is the only signal.
     bank: Option<ObserverBank>,
     signals: Vec<Signal>,
+    /// By signal.
+    timing: Vec<TimingErrors>,
     velocity: VelocityCovariance,
     standstill: Standstill,
     slow: SlowErrors,
@@ -58,6 +61,7 @@ pub(crate) struct ContactTest {
     next: usize,
     started: bool,
     without_bias: Vec<f64>,
+    scratch: Vec<f64>,
     /// By signal: the torque without what is free, but with the bias.
     shown: Vec<Vec<f64>>,
     /// By velocity variable: over one where the joint is over its own threshold.
@@ -84,9 +88,11 @@ impl ContactTest {
         let signal = |level: &Level| {
             Signal::new(variances, &vec![level.gain; nv], Order::Second, dt, level.level, level.gaussian)
         };
+        let timing = |gain: &f64| TimingErrors::new(&vec![*gain; nv], Order::Second);
         ContactTest {
             bank: Some(ObserverBank::new(nv, dt, &gains, Order::Second)),
             signals: levels.iter().map(signal).collect(),
+            timing: gains.iter().map(timing).collect(),
             velocity: VelocityCovariance::new(&robot, &variances.velocity),
             standstill: Standstill::new(&variances.velocity),
             slow: SlowErrors::new(
@@ -99,6 +105,7 @@ impl ContactTest {
             next: 0,
             started: false,
             without_bias: vec![0.0; nv],
+            scratch: vec![0.0; nv],
             shown: vec![vec![0.0; nv]; levels.len()],
             joints: vec![0.0; nv],
             suspicious: false,
@@ -122,13 +129,21 @@ impl ContactTest {
         let signal = Signal::new(variances, gain, Order::First, dt, level.level, level.gaussian);
         let test = ContactTest::new(robot, variances, dt, &[], model_errors, follow_time);
         let shown = vec![vec![0.0; gain.len()]];
-        ContactTest { bank: None, signals: vec![signal], shown, ..test }
+        let timing = vec![TimingErrors::new(gain, Order::First)];
+        ContactTest { bank: None, signals: vec![signal], timing, shown, ..test }
     }
 
     /// A step to a pose and velocities `(nv,)`, with the external torque before any low-pass; none where the step told nothing
     /// of it.
     #[inline]
-    pub fn advance(&mut self, kinematics: &Kinematics, v: &[f64], unexplained: Option<&[f64]>, step: Step) {
+    pub fn advance(
+        &mut self,
+        kinematics: &Kinematics,
+        v: &[f64],
+        moving_torque: Option<&[f64]>,
+        unexplained: Option<&[f64]>,
+        step: Step,
+    ) {
         if let Some(bank) = &mut self.bank {
             bank.advance(unexplained, step);
         }
@@ -138,9 +153,12 @@ impl ContactTest {
         let moving = self.standstill.advance(v, length);
         self.friction.advance(v, length);
         self.payload.advance(&self.robot, kinematics, length);
-        let Self { signals, velocity, slow, friction, payload, .. } = self;
+        let Self { signals, timing, velocity, slow, friction, payload, .. } = self;
         let told = unexplained.map(|_| length);
         signals.iter_mut().for_each(|signal| signal.advance(told, moving));
+        if let Some(torque) = moving_torque {
+            timing.iter_mut().for_each(|timing| timing.advance(torque, told));
+        }
         let whiten = |signal: &mut Signal| signal.whiten(velocity, slow, friction, payload);
         if self.started {
             let next = self.next;
@@ -163,7 +181,7 @@ impl ContactTest {
         if in_contact && free.is_none() {
             self.forget_what_fell();
         }
-        let Self { bank, signals, slow, without_bias, shown, joints, .. } = self;
+        let Self { bank, signals, timing, slow, without_bias, scratch, shown, joints, .. } = self;
         self.suspicious = false;
         joints.fill(0.0);
         let first = usize::from(bank.is_some());
@@ -175,6 +193,11 @@ impl ContactTest {
             signal.evaluate(without_bias, first + which, free.as_deref_mut());
             for ((shown, left), bias) in shown[which].iter_mut().zip(&*without_bias).zip(slow.bias()) {
                 *shown = left + bias;
+            }
+            if signal.statistic > SUSPICIOUS * signal.level {
+                scratch.copy_from_slice(without_bias);
+                timing[which].take_from(scratch);
+                signal.evaluate(scratch, first + which, free.as_deref_mut());
             }
             self.suspicious |= signal.statistic > SUSPICIOUS * signal.level;
             if signal.statistic <= share * signal.level {
@@ -318,6 +341,7 @@ impl ContactTest {
             bank.reset();
         }
         self.signals.iter_mut().for_each(Signal::reset);
+        self.timing.iter_mut().for_each(TimingErrors::reset);
         self.velocity.reset();
         self.standstill.reset();
         self.slow.reset();
@@ -367,7 +391,7 @@ mod tests {
             let mut unexplained = [0.0; 7];
             unexplained[3] = torque;
             for _ in 0..ticks {
-                self.test.advance(&self.kinematics, &[0.0; 7], Some(&unexplained), Step::Nominal);
+                self.test.advance(&self.kinematics, &[0.0; 7], None, Some(&unexplained), Step::Nominal);
                 self.test.evaluate(&[], touched, None);
                 self.test.follow(DT, touched);
             }

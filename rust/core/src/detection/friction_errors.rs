@@ -6,8 +6,10 @@ use crate::observer::Order;
 pub(crate) const SLOW: f64 = 0.02;
 /// An error of friction at a start or stop is forgotten in this time (s).
 const FORGOTTEN: f64 = 0.25;
-/// Share of its variance that stays while the joint is slow.
+/// Share of its variance that stays while the joint is at rest, and while it moves so slowly (rad/s; m/s) that friction is another
+/// than in fast motion (Stribeck).
 const AT_REST: f64 = 0.25;
+const STRIBECK: f64 = 0.15;
 /// How long the error lasts, which an observer smooths (s): motor currents of a real arm (UR10) show it for about so long.
 const DURATION: f64 = 0.1;
 
@@ -31,7 +33,7 @@ impl FrictionErrors {
         let decay = (1.0 - dt / FORGOTTEN).max(0.0);
         for ((share, slow), v) in self.share.iter_mut().zip(&mut self.slow).zip(v) {
             let is_slow = v.abs() < SLOW;
-            let left = (*share * decay).max(if is_slow { AT_REST } else { 0.0 });
+            let left = (*share * decay).max(if v.abs() < STRIBECK { AT_REST } else { 0.0 });
             *share = if is_slow == *slow { left } else { 1.0 };
             *slow = is_slow;
         }

@@ -55,7 +55,7 @@ impl Signal {
         let alike = gain.windows(2).all(|pair| pair[0] == pair[1]);
         let distinct = if alike { gain.len().min(1) } else { gain.len() };
         let white: Vec<WhiteNoise> =
-            gain[..distinct].iter().map(|gain| WhiteNoise::new(*gain, dt, order)).collect();
+            gain[..distinct].iter().map(|gain| variances.white_noise(*gain, dt, order)).collect();
         let shares: Vec<WhiteShares> = white.iter().map(WhiteNoise::shares).collect();
         Signal {
             of_sample: variances.torque.clone(),

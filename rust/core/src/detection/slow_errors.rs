@@ -14,6 +14,9 @@ const SETTLING: f64 = 0.375;
 const LEARNT_TIME: f64 = 0.7;
 /// A bias does not go beyond so many standard deviations of what it can be: a held force cannot hide behind it.
 const LARGEST_BIAS: f64 = 4.0;
+/// Beyond that it may hold what contacts have left in a joint, up to so many standard deviations of it: gears without a load of their
+/// own keep it for good.
+const LARGEST_LEFT: f64 = 2.0;
 /// Time over which the bias of a robot that is not followed becomes unknown again (s).
 const BIAS_TIME: f64 = 60.0;
 /// A joint keeps no more of a contact's load than all joints together err by: what is larger may be a force that is held.
@@ -44,6 +47,8 @@ pub(crate) struct SlowErrors {
     /// Variance of what a contact may have left in each joint (Nm squared), and the most that it can be.
     kept: Vec<f64>,
     largest_kept: Vec<f64>,
+    /// The largest of those variances since the bias was known (Nm squared).
+    left: Vec<f64>,
 }
 
 impl SlowErrors {
@@ -65,6 +70,7 @@ impl SlowErrors {
             unsettled: 0.0,
             unknown: vec![1.0; noise.model.len()],
             kept: vec![0.0; noise.model.len()],
+            left: vec![0.0; noise.model.len()],
             largest_kept: noise
                 .is_force
                 .iter()
@@ -90,7 +96,7 @@ impl SlowErrors {
             self.age[j] = (self.age[j] + dt).min(self.time_constant);
             let share = (dt / self.age[j].max(FIRST_TIME)).min(1.0);
             self.of_model.follow(j, share);
-            let (zero, limit) = (self.zero[j], self.limit(j));
+            let (zero, limit) = (self.zero[j], self.limit(j).hypot(LARGEST_LEFT * self.left[j].sqrt()));
             self.bias[j] = (self.bias[j] + share * (torque - self.bias[j])).clamp(zero - limit, zero + limit);
             let left = (1.0 - share).powi(2);
             self.unknown[j] *= 1.0 - share;
@@ -132,6 +138,7 @@ impl SlowErrors {
         for (k, kept) in self.kept.iter_mut().enumerate() {
             let load = self.noise.relative[k] * (torque[k] - self.bias[k]);
             *kept = kept.max((load * load).min(self.largest_kept[k]));
+            self.left[k] = self.left[k].max(*kept);
             self.bias[k] += forgotten * (self.zero[k] - self.bias[k]);
             self.of_model.forget(k, forgotten);
         }
@@ -173,6 +180,7 @@ impl SlowErrors {
         self.zero.copy_from_slice(torque);
         self.bias.copy_from_slice(torque);
         self.kept.fill(0.0);
+        self.left.fill(0.0);
         self.age.fill(self.time_constant);
         self.lost.fill(0.0);
         self.unknown.fill(0.0);
@@ -205,6 +213,7 @@ impl SlowErrors {
         self.zero.fill(0.0);
         self.bias.fill(0.0);
         self.kept.fill(0.0);
+        self.left.fill(0.0);
         self.age.fill(0.0);
         self.lost.fill(0.0);
         self.unknown.fill(1.0);
@@ -274,6 +283,26 @@ mod tests {
         let mut errors = errors();
         follow(&mut errors, [20.0, 0.0], 60.0);
         assert_eq!(errors.bias()[0], 4.0 * 0.05_f64.sqrt());
+    }
+
+    #[test]
+    fn what_a_contact_has_left_can_become_the_bias_of_a_joint_that_errs_by_little() {
+        let noise = SlowNoise {
+            model: vec![0.01, 1e-6],
+            model_time: vec![10.0; 2],
+            bias: vec![0.04, 0.0],
+            relative: vec![0.05; 2],
+            is_force: vec![false; 2],
+        };
+        let mut errors = SlowErrors::new(noise, ModelErrors::new(vec![], 2), 3.0);
+        follow(&mut errors, [0.0, 0.03], 20.0);
+        assert!((errors.bias()[1] - 4e-3).abs() < 1e-9);
+        // 5 % of 1 Nm.
+        (0..300).for_each(|_| errors.lose(&[0.0, 1.0], DT));
+        follow(&mut errors, [0.0, 0.03], 20.0);
+        assert!((errors.bias()[1] - 0.03).abs() < 1e-3, "{}", errors.bias()[1]);
+        follow(&mut errors, [0.0, 1.0], 20.0);
+        assert!(errors.bias()[1] < 0.11);
     }
 
     #[test]

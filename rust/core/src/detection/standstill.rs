@@ -16,7 +16,7 @@ pub(crate) struct Standstill {
 impl Standstill {
     /// For standard deviations of the velocities' noise `(nv,)`.
     pub fn new(deviations: &[f64]) -> Self {
-        Standstill { deviations: deviations.to_vec(), share: 1.0 }
+        Standstill { deviations: deviations.to_vec(), share: SMALLEST }
     }
 
     /// A step of `dt` (s) to velocities `(nv,)`: the share of the variance of the velocities' noise. All joints count as the one that
@@ -30,9 +30,9 @@ impl Standstill {
         self.share
     }
 
-    /// As at the start: the robot may move.
+    /// As at the start.
     pub fn reset(&mut self) {
-        self.share = 1.0;
+        self.share = SMALLEST;
     }
 }
 
@@ -46,7 +46,8 @@ mod tests {
     #[test]
     fn a_robot_that_stands_has_no_noise_of_velocity_and_one_that_starts_all_of_it() {
         let mut standstill = Standstill::new(&[5e-3, 0.0]);
-        assert_eq!(standstill.advance(&[0.0, 3.0], 0.0), 1.0);
+        assert_eq!(standstill.advance(&[0.0, 3.0], 0.0), SMALLEST);
+        assert_eq!(standstill.advance(&[0.01, 3.0], DT), 1.0);
         assert!(standstill.advance(&[1e-6, 3.0], 0.05) >= 0.5);
         let share = (0..1000).fold(1.0, |_, _| standstill.advance(&[1e-6, 3.0], DT));
         assert_eq!(share, SMALLEST);
@@ -57,6 +58,7 @@ mod tests {
     fn noise_at_rest_stays_noise() {
         let noise = Stream::new(2);
         let mut standstill = Standstill::new(&[5e-3; 2]);
+        standstill.advance(&[5e-3; 2], DT);
         let smallest = (0..10_000).map(|k| standstill.advance(&noise.normals(2 * k).map(|x| 5e-3 * x), DT));
         assert!(smallest.fold(1.0, f64::min) > 0.7);
     }

@@ -1,6 +1,12 @@
 //! What an observer leaves of white noise, step by step: a longer step averages less of it.
 
 use crate::observer::Order;
+use crate::torque::ErrorVariances;
+
+/// What a joint that starts within a step of its encoder shows at most of the torque that moves it, as a share of mass times step
+/// times the square of the low-passes' gain, is 0.3 to 0.7 (starts of 1 to 5 rad/s^2, steps of 17 bits, low-passes of 100/s).
+/// All joints of a robot start together, and the level of seven is at 2.8 standard deviations of each: one is this share.
+const HIDDEN: f64 = 0.2;
 
 /// Variances behind an observer of one gain, as shares of those of a sample, by an exact recursion over the steps.
 #[derive(Debug, Clone, Copy)]
@@ -13,6 +19,8 @@ pub(crate) struct WhiteNoise {
     now: [Passed; 2],
     /// Share of the momentum's noise that a sample has.
     moving: f64,
+    /// What is left of motion that an encoder does not show yet, as a share of the momentum's noise (1/s^2).
+    hidden: f64,
     /// Of the last step, since most are alike (s).
     length: f64,
     decay: f64,
@@ -89,13 +97,34 @@ fn inputs(length: f64) -> [[f64; 2]; 2] {
     [[0.5, 0.5], [-1.0 / length, 1.0 / length]]
 }
 
+impl ErrorVariances {
+    /// White noise behind an observer of a `gain` (1/s) that is called every `dt` (s).
+    pub(crate) fn white_noise(&self, gain: f64, dt: f64, order: Order) -> WhiteNoise {
+        let norm = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>().sqrt();
+        let (step, noise) = (norm(&self.position_step), norm(&self.velocity));
+        let step = if noise > 0.0 { step / noise } else { 0.0 };
+        WhiteNoise::new(gain, dt, order).with_position_step(step)
+    }
+}
+
 impl WhiteNoise {
     /// Behind an observer of a `gain` (1/s) that has been called every `dt` (s).
     pub fn new(gain: f64, dt: f64, order: Order) -> Self {
         let pole = order.pole(gain);
         let decay = (-pole * dt).exp();
         let nominal = inputs(dt).map(|input| Passed::steady(decay, input));
-        WhiteNoise { order, pole, nominal, now: nominal, moving: 1.0, length: dt, decay }
+        WhiteNoise { order, pole, nominal, now: nominal, moving: 1.0, hidden: 0.0, length: dt, decay }
+    }
+
+    /// The same of a robot whose encoders count steps, `step` times as large as the noise of the velocities (s).
+    pub fn with_position_step(self, step: f64) -> Self {
+        let hidden = match self.order {
+            // One low-pass passes the whole velocity of a count, as in motion.
+            Order::First if step > 0.0 => self.of_order(&self.nominal[1]),
+            Order::First => 0.0,
+            Order::Second => (HIDDEN * step * self.pole * self.pole).powi(2),
+        };
+        WhiteNoise { hidden, ..self }
     }
 
     /// A step of `length` (s); none where the observer keeps its output. `moving` is the share of the momentum's noise
@@ -118,11 +147,15 @@ impl WhiteNoise {
     /// After the last step.
     #[inline]
     pub fn shares(&self) -> WhiteShares {
-        let [torque, velocity] = self.now.map(|passed| match self.order {
+        let [torque, velocity] = [0, 1].map(|which| self.of_order(&self.now[which]));
+        WhiteShares { torque, velocity: self.moving * velocity + (1.0 - self.moving) * self.hidden }
+    }
+
+    fn of_order(&self, passed: &Passed) -> f64 {
+        match self.order {
             Order::First => passed.first,
             Order::Second => passed.second,
-        });
-        WhiteShares { torque, velocity: self.moving * velocity }
+        }
     }
 
     /// As after nominal steps.
@@ -199,6 +232,26 @@ mod tests {
         let [one, two] =
             [Order::First, Order::Second].map(|order| WhiteNoise::new(8.0, 1e-3, order).shares());
         assert!(two.velocity < 0.02 * one.velocity && (two.torque / one.torque - 1.0).abs() < 0.02);
+    }
+
+    #[test]
+    fn a_start_within_a_step_of_the_encoder_is_no_contact_at_any_gain() {
+        // A mass of 1 kg m^2 starts with 3 rad/s^2; steps of 17 bits, and the noise of their differences.
+        let (step, noise) = (std::f64::consts::TAU / 2f64.powi(17), 6e-3);
+        for gain in [8.0, 50.0, 200.0] {
+            let mut standing = WhiteNoise::new(gain, 1e-3, Order::Second).with_position_step(step / noise);
+            standing.advance(Some(1e-3), 0.0);
+            let deviation = noise * standing.shares().velocity.sqrt();
+            let hidden = (2.0 * step / 3.0).sqrt();
+            let shown = 3.0 * Order::Second.step_response(gain, hidden);
+            assert!((0.5..5.0).contains(&(shown / deviation)), "{gain}: {shown} {deviation}");
+        }
+        let moving = WhiteNoise::new(50.0, 1e-3, Order::First);
+        let standing = moving.with_position_step(1e-3);
+        assert_eq!(standing.shares(), moving.shares());
+        let mut standing = standing;
+        standing.advance(Some(1e-3), 0.0);
+        assert!((standing.shares().velocity / moving.shares().velocity - 1.0).abs() < 1e-9);
     }
 
     #[test]

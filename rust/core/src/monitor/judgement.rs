@@ -15,7 +15,13 @@ impl ContactMonitor {
         let length = step.length(clock.dt());
         *remainder_learned = false;
         leave_out(sensing, collision_torque, Some(test.slow().bias()));
-        test.advance(observer.kinematics(), observer.velocity(), observer.unexplained(), step);
+        test.advance(
+            observer.kinematics(),
+            observer.velocity(),
+            observer.known_rate(),
+            observer.unexplained(),
+            step,
+        );
         test.evaluate(collision_torque, detector.collision(), free.if_any());
         let touched = detector.collision() || felt || test.suspicious();
         if touched && !new {

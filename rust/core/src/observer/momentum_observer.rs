@@ -55,6 +55,8 @@ pub struct MomentumObserver {
     unexplained: Vec<f64>,
     /// `tau_m - tau_f`.
     motor_torque: Vec<f64>,
+    /// Of a calibrated robot: where it was when the velocities and torques were what they are.
+    configuration: Vec<f64>,
     velocity: Vec<f64>,
     total_torque: Vec<f64>,
     acceleration: Vec<f64>,
@@ -64,6 +66,8 @@ pub struct MomentumObserver {
     integrated: bool,
     /// The robot changed since the last step.
     changed: bool,
+    /// Whether the external torque of the last step was given.
+    external: bool,
 }
 
 impl MomentumObserver {
@@ -98,12 +102,15 @@ impl MomentumObserver {
             started: false,
             integrated: false,
             changed: false,
+            external: false,
             calibration: None,
+            configuration: vec![0.0; robot.nq()],
             robot,
         })
     }
 
     /// The same of a calibrated robot: velocities and torques are corrected, and inertias are those that its motion showed.
+    /// Torques, velocities and the pose are those of one time, when the latest of the measured signals was what it is.
     ///
     /// # Errors
     /// [`Error::Input`] also where the calibration is of another robot.
@@ -131,17 +138,25 @@ impl MomentumObserver {
         std::mem::swap(&mut self.known_rate, &mut self.known_rate_before);
         self.velocity.copy_from_slice(v);
         spread_torque(tau, &mut self.motor_torque);
+        let mut configuration = q;
         if let Some(calibration) = &mut self.calibration {
             if !self.started {
                 calibration.reset();
-            } else if step.is_gap() {
-                calibration.bridge_gap();
             }
             let length = if self.started { step.length(self.dt) } else { 0.0 };
             calibration.correct(length, &mut self.velocity, &mut self.motor_torque);
+            if calibration.delay() > 0.0 {
+                self.configuration.copy_from_slice(q);
+                self.robot.advance_configuration(
+                    &mut self.configuration,
+                    &self.velocity,
+                    -calibration.delay(),
+                );
+                configuration = &self.configuration;
+            }
         }
         let v = &self.velocity;
-        self.kinematics.set_configuration(&self.robot, q);
+        self.kinematics.set_configuration(&self.robot, configuration);
         self.kinematics.set_velocity(&self.robot, v);
         self.pass.evaluate(&self.robot, &self.kinematics, v, &mut self.momentum, &mut self.known_rate);
         if let Some(friction) = friction {
@@ -153,7 +168,7 @@ impl MomentumObserver {
         if self.integrated {
             self.integrate(step);
         }
-        self.started = true;
+        (self.started, self.external) = (true, false);
         self.acceleration_is_current = false;
         &self.external_torque
     }
@@ -178,6 +193,7 @@ impl MomentumObserver {
         // The motors' torque is not known.
         self.acceleration.fill(f64::NAN);
         (self.acceleration_is_current, self.integrated, self.changed) = (true, true, false);
+        self.external = true;
     }
 
     /// `r' = gain (dp/dt - known rate - r)`, exactly over a step on which `dp/dt - known rate` is constant.
@@ -200,6 +216,12 @@ impl MomentumObserver {
     /// second step and over a gap.
     pub(crate) fn unexplained(&self) -> Option<&[f64]> {
         self.integrated.then_some(&self.unexplained[..])
+    }
+
+    /// The rate of the momentum at the last step without external torque: of the motors' torque, gravity and velocities; none where
+    /// the external torque was given.
+    pub(crate) fn known_rate(&self) -> Option<&[f64]> {
+        (!self.external).then_some(&self.known_rate[..])
     }
 
     /// The corrected velocity `(nv,)` of the last step.

@@ -32,18 +32,26 @@ impl Robot {
         self.check_configuration(q)?;
         self.check_tangent("v", v)?;
         let mut next = q.to_vec();
+        self.advance_configuration(&mut next, v, 1.0);
+        Ok(next)
+    }
+
+    /// Moves a checked configuration for a time (s) at a constant velocity, in place.
+    pub(crate) fn advance_configuration(&self, q: &mut [f64], v: &[f64], time: f64) {
         for body in &self.bodies[1..] {
-            let (q, v) = (&mut next[body.idx_q..], &v[body.idx_v..]);
+            let (q, v) = (&mut q[body.idx_q..], &v[body.idx_v..]);
             match body.kind {
-                JointKind::Revolute | JointKind::Prismatic => q[0] += v[0],
+                JointKind::Revolute | JointKind::Prismatic => q[0] += time * v[0],
                 JointKind::Continuous => {
-                    let ((sin, cos), norm) = (v[0].sin_cos(), q[0].hypot(q[1]));
+                    let ((sin, cos), norm) = ((time * v[0]).sin_cos(), q[0].hypot(q[1]));
                     (q[0], q[1]) = ((q[0] * cos - q[1] * sin) / norm, (q[1] * cos + q[0] * sin) / norm);
                 }
-                JointKind::FreeFlyer => move_base(&mut q[..7], &v[..6]),
+                JointKind::FreeFlyer => {
+                    let way: [f64; 6] = std::array::from_fn(|k| time * v[k]);
+                    move_base(&mut q[..7], &way);
+                }
             }
         }
-        Ok(next)
     }
 
     /// A random configuration, for a seed always the same.

@@ -11,6 +11,8 @@ pub(crate) struct ErrorVariances {
     pub torque: Vec<f64>,
     /// White noise of the velocity, as standard deviations (rad/s).
     pub velocity: Vec<f64>,
+    /// Step between two positions that are counted (rad).
+    pub position_step: Vec<f64>,
     /// Of friction while a joint starts or stops (Nm squared).
     pub friction: Vec<f64>,
     pub slow: SlowNoise,
@@ -44,6 +46,7 @@ impl NoiseModel {
         Ok(ErrorVariances {
             torque: squares("noise.torque", &self.torque)?,
             velocity: robot.per_velocity("noise.velocity", &self.velocity)?,
+            position_step: robot.per_velocity("noise.position_step", &self.position_step)?,
             friction: squares("noise.friction", &self.friction)?,
             slow: SlowNoise {
                 model: squares("noise.model", &self.model)?,

@@ -41,6 +41,9 @@ pub struct NoiseModel {
     /// What the bias differs by from one start to the next: gears keep a part of their load, sensors drift (Nm; N for sliding
     /// joints).
     pub bias: Vec<f64>,
+    /// Step between two positions that an encoder counts (rad; m for sliding joints), no standard deviation: a joint that
+    /// starts to move within it still seems to stand.
+    pub position_step: Vec<f64>,
 }
 
 impl Default for NoiseModel {
@@ -53,6 +56,7 @@ impl Default for NoiseModel {
             model_time: vec![1.0],
             friction: vec![0.0],
             bias: vec![0.0],
+            position_step: vec![0.0],
         }
     }
 }
@@ -159,6 +163,7 @@ impl NoiseModel {
             ("model_time", &self.model_time),
             ("friction", &self.friction),
             ("bias", &self.bias),
+            ("position_step", &self.position_step),
         ] {
             if let Some(value) = values.iter().find(|x| !(0.0..LARGEST).contains(*x)) {
                 return Err(Error::input(name, format!("must be finite and not negative, not {value}")));
@@ -178,6 +183,7 @@ impl NoiseModel {
         robot.per_velocity("noise.model_time", &self.model_time)?;
         robot.per_velocity("noise.friction", &self.friction)?;
         robot.per_velocity("noise.bias", &self.bias)?;
+        robot.per_velocity("noise.position_step", &self.position_step)?;
         let torque = robot.per_velocity("noise.torque", &self.torque)?;
         let model = robot.per_velocity("noise.model", &self.model)?;
         let relative = robot.per_velocity("noise.relative", &self.relative)?;

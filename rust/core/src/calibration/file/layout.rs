@@ -4,7 +4,7 @@ use crate::calibration::{Calibration, Reversal};
 use crate::torque::NoiseModel;
 
 /// Files of another format are refused: an entry may mean something else there.
-pub(super) const FORMAT: &str = "3";
+pub(super) const FORMAT: &str = "4";
 
 /// Which numbers can be used.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,7 +97,7 @@ pub(super) fn reversal_kind(reversal: Reversal) -> (&'static str, &'static str) 
 pub(super) const VELOCITY: &str = "rad/s (m/s)";
 pub(super) const DISPLACEMENT: &str = "rad (m)";
 
-pub(super) const NOISE_FIELDS: [Field<NoiseModel, Vec<f64>>; 7] = [
+pub(super) const NOISE_FIELDS: [Field<NoiseModel, Vec<f64>>; 8] = [
     field!("torque", "Nm (N), white, per sample", NotNegative, torque),
     field!("velocity", "rad/s (m/s), white, per sample", NotNegative, velocity),
     field!("relative", "share of the contact's own torque", NotNegative, relative),
@@ -105,6 +105,7 @@ pub(super) const NOISE_FIELDS: [Field<NoiseModel, Vec<f64>>; 7] = [
     field!("model_time", "s, time over which these change", NotNegative, model_time),
     field!("friction", "Nm (N), of friction at starts and stops", NotNegative, friction),
     field!("bias", "Nm (N), from one start to the next", NotNegative, bias),
+    field!("position_step", "rad (m), between two positions that are counted", NotNegative, position_step),
 ];
 
 pub(super) const ROBOT_FIELDS: [Field<Calibration, f64>; 4] = [
