@@ -18,8 +18,7 @@ impl Calibration {
             let gaussian = gaussian_level(nv, gain, dt, rate);
             // A log holds less than later motion: what friction does in slow motion, for one. Its tail does not lower the level.
             let tail = self.tails.iter().find(|tail| tail.gain == gain);
-            let level = tail.map_or(gaussian, |tail| tail.at(rate).max(gaussian));
-            Level { gain, level, gaussian }
+            Level { gain, level: gaussian.max(tail.map_or(0.0, |tail| tail.at(rate))), gaussian }
         };
         gains.into_iter().map(level).collect()
     }
@@ -49,11 +48,13 @@ mod tests {
             Calibration { tails, ..described.clone() }.levels(7, 1e-3)
         };
         let gaussian = with(1.0, 1e-3)[0].gaussian;
-        for (level, scale, expected) in [(60.0, 2.0, None), (1.0, 1e-3, Some(1.0)), (200.0, 1.0, None)] {
+        let tail_at = |level: f64, scale: f64| {
+            Tail { gain: 8.0, level, scale }.at(0.5 * described.false_alarms_per_hour)
+        };
+        for (level, scale, expected) in
+            [(60.0, 2.0, tail_at(60.0, 2.0)), (1.0, 1e-3, gaussian), (200.0, 1.0, tail_at(200.0, 1.0))]
+        {
             let found = with(level, scale)[0];
-            let tail = Tail { gain: 8.0, level, scale };
-            let expected =
-                expected.map_or(tail.at(0.5 * described.false_alarms_per_hour), |share| share * gaussian);
             assert!((found.level - expected).abs() < 1e-9 && found.gaussian == gaussian, "{level}");
         }
         let without = Calibration { tails: vec![], ..described }.levels(7, 1e-3);

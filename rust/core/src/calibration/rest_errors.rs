@@ -73,10 +73,10 @@ pub(super) fn rest_errors(
         let squares = (0..log.len()).map(|row| log.tau_of(row)[j].powi(2)).sum::<f64>();
         (squares / log.len() as f64).sqrt()
     };
-    noise.bias = (0..robot.nv()).map(|j| noise.relative[j] * rms(j)).collect();
+    let torques: Vec<f64> = (0..robot.nv()).map(rms).collect();
+    noise.bias = noise.relative.iter().zip(&torques).map(|(relative, torque)| relative * torque).collect();
     let norm = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>().sqrt();
-    let all: Vec<f64> = (0..robot.nv()).map(rms).collect();
-    let known = if norm(coulomb) > OF_GEARS * norm(&all) { KNOWN_GEAR_SHARE } else { KNOWN_SHARE };
+    let known = if norm(coulomb) > OF_GEARS * norm(&torques) { KNOWN_GEAR_SHARE } else { KNOWN_SHARE };
     if gains.is_empty() {
         noise.friction = coulomb.iter().map(|coulomb| known * coulomb).collect();
         return Ok((noise, vec![]));
