@@ -3,6 +3,10 @@
 use super::{Calibration, Tail};
 use crate::detection::{gaussian_level, Level, GAINS, LARGEST_STEP};
 
+/// The lowest level, as a share of the level of Gaussian noise: a log holds less than later motion, so its tail lowers the
+/// level only so far.
+const LOWEST: f64 = 0.5;
+
 impl Calibration {
     /// Levels for a bank of observers called every `dt` (s), of those gains that the log could judge; the rate of false alarms
     /// is shared between them. Empty where `dt` is too long for all of them.
@@ -16,9 +20,9 @@ impl Calibration {
         let rate = self.false_alarms_per_hour / gains.len() as f64;
         let level = |gain: f64| {
             let gaussian = gaussian_level(nv, gain, dt, rate);
-            // A log holds less than later motion: what friction does in slow motion, for one. Its tail does not lower the level.
-            let tail = self.tails.iter().find(|tail| tail.gain == gain);
-            Level { gain, level: gaussian.max(tail.map_or(0.0, |tail| tail.at(rate))), gaussian }
+            let shown =
+                self.tails.iter().find(|tail| tail.gain == gain).map_or(gaussian, |tail| tail.at(rate));
+            Level { gain, level: shown.max(LOWEST * gaussian), gaussian }
         };
         gains.into_iter().map(level).collect()
     }
@@ -41,7 +45,7 @@ mod tests {
     use crate::robot::Robot;
 
     #[test]
-    fn the_level_is_what_the_log_shows_and_no_less_than_the_gaussian_one() {
+    fn the_level_is_what_the_log_shows_and_no_less_than_half_of_the_gaussian_one() {
         let described = Calibration::of_description(&Robot::example_arm());
         let with = |level: f64, scale: f64| {
             let tails = vec![Tail { gain: 8.0, level, scale }, Tail { gain: 50.0, level, scale }];
@@ -51,8 +55,9 @@ mod tests {
         let tail_at = |level: f64, scale: f64| {
             Tail { gain: 8.0, level, scale }.at(0.5 * described.false_alarms_per_hour)
         };
+        let lowest = 0.5 * gaussian;
         for (level, scale, expected) in
-            [(60.0, 2.0, tail_at(60.0, 2.0)), (1.0, 1e-3, gaussian), (200.0, 1.0, tail_at(200.0, 1.0))]
+            [(60.0, 2.0, tail_at(60.0, 2.0)), (1.0, 1e-3, lowest), (10.0, 1.5, tail_at(10.0, 1.5))]
         {
             let found = with(level, scale)[0];
             assert!((found.level - expected).abs() < 1e-9 && found.gaussian == gaussian, "{level}");

@@ -76,7 +76,8 @@ pub(super) fn rest_errors(
     let torques: Vec<f64> = (0..robot.nv()).map(rms).collect();
     noise.bias = noise.relative.iter().zip(&torques).map(|(relative, torque)| relative * torque).collect();
     let norm = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>().sqrt();
-    let known = if norm(coulomb) > OF_GEARS * norm(&torques) { KNOWN_GEAR_SHARE } else { KNOWN_SHARE };
+    let of_gears = norm(coulomb) > OF_GEARS * norm(&torques);
+    let known = if of_gears { KNOWN_GEAR_SHARE } else { KNOWN_SHARE };
     if gains.is_empty() {
         noise.friction = coulomb.iter().map(|coulomb| known * coulomb).collect();
         return Ok((noise, vec![]));
@@ -113,7 +114,11 @@ pub(super) fn rest_errors(
             }
         })
         .collect();
-    let tails = tails(robot, log, parts, skipped, step, &gains, &noise)?;
+    let mut tails = tails(robot, log, parts, skipped, step, &gains, &noise)?;
+    if of_gears {
+        // Later motion shows more of their friction than a log does.
+        tails.iter_mut().for_each(|tail| *tail = tail.at_least(Tail::gaussian(robot.nv(), tail.gain, step)));
+    }
     Ok((noise, tails))
 }
 

@@ -39,6 +39,17 @@ impl Tail {
         self.level + self.scale * (PEAKS * HOUR / per_hour).ln().max(0.0)
     }
 
+    /// The tail of `degrees` Gaussian torques behind an observer of a `gain` (1/s), called every `dt` (s).
+    pub(crate) fn gaussian(degrees: usize, gain: f64, dt: f64) -> Tail {
+        let [peaks, hourly] = [PEAKS * HOUR, 1.0].map(|rate| gaussian_level(degrees, gain, dt, rate));
+        Tail { gain, level: peaks, scale: (hourly - peaks) / (PEAKS * HOUR).ln() }
+    }
+
+    /// No lower than another tail of the same gain.
+    pub(crate) fn at_least(self, other: Tail) -> Tail {
+        Tail { level: self.level.max(other.level), scale: self.scale.max(other.scale), ..self }
+    }
+
     /// The tail of the statistic's values that were the largest of [`PEAK_TIME`] each; none of too few.
     pub(crate) fn of_peaks(gain: f64, peaks: &mut [f64]) -> Option<Tail> {
         peaks.sort_by(f64::total_cmp);
@@ -67,6 +78,19 @@ pub(crate) fn gaussian_level(degrees: usize, gain: f64, dt: f64, per_hour: f64) 
 mod tests {
     use super::*;
     use crate::math::random::Stream;
+
+    #[test]
+    fn the_gaussian_tail_is_that_of_its_level() {
+        for degrees in [2, 6, 7] {
+            let tail = Tail::gaussian(degrees, 50.0, 1e-3);
+            for per_hour in [0.1, 1.0, 30.0, 1e3] {
+                let level = gaussian_level(degrees, 50.0, 1e-3, per_hour);
+                assert!((tail.at(per_hour) / level - 1.0).abs() < 0.03, "{degrees} {per_hour}");
+            }
+            let shown = Tail { gain: 50.0, level: 1.0, scale: 10.0 };
+            assert_eq!(shown.at_least(tail), Tail { scale: 10.0, ..tail });
+        }
+    }
 
     /// Three Gaussian torques behind a low-pass exceed the level as often as it says.
     #[test]
