@@ -927,7 +927,8 @@ class Calibration:
         """How large the errors made the statistic of detection on those blocks, `(k, 3)`; a read-only copy.
 
         One row a gain of the observers: the gain [1/s], the statistic that was exceeded 0.8 times a second, and by how much
-        more it is at a rate that is a factor of e lower.
+        more it is at a rate that is a factor of e lower. Where the torques contain the friction
+        of gears, no less than of Gaussian errors.
         """
     @property
     def model_errors(self) -> NDArray[np.float64]:

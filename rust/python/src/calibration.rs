@@ -264,7 +264,8 @@ impl PyCalibration {
     /// How large the errors made the statistic of detection on those blocks, `(k, 3)`; a read-only copy.
     ///
     /// One row a gain of the observers: the gain [1/s], the statistic that was exceeded 0.8 times a second, and by how much
-    /// more it is at a rate that is a factor of e lower.
+    /// more it is at a rate that is a factor of e lower. Where the torques contain the friction
+    /// of gears, no less than of Gaussian errors.
     #[getter]
     fn tails<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let rows = self.0.tails.iter().map(|tail| [tail.gain, tail.level, tail.scale]);

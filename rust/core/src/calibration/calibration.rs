@@ -76,7 +76,8 @@ pub struct Calibration {
     pub noise: NoiseModel,
     /// What is left of the low-passed torque, on blocks of the log that were not fitted (Nm; N).
     pub residual: Vec<f64>,
-    /// How large the errors made the statistic of detection on those blocks, by gain of the observer.
+    /// How large the errors made the statistic of detection on those blocks, by gain of the observer; where the torques contain
+    /// the friction of gears, no less than Gaussian errors make it.
     pub tails: Vec<Tail>,
     /// Errors of the model that the motion of the log leaves possible and did not show: what poses and speeds may show that it
     /// never had.
