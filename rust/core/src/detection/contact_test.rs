@@ -199,7 +199,8 @@ impl ContactTest {
                 timing[which].take_from(scratch);
                 signal.evaluate(scratch, first + which, free.as_deref_mut());
             }
-            self.suspicious |= signal.statistic > SUSPICIOUS * signal.level;
+            // A lower level does not make slow errors less known.
+            self.suspicious |= signal.statistic > SUSPICIOUS * signal.level.max(signal.gaussian_level);
             if signal.statistic <= share * signal.level {
                 continue;
             }
