@@ -56,9 +56,12 @@ mod tests {
             Tail { gain: 8.0, level, scale }.at(0.5 * described.false_alarms_per_hour)
         };
         let lowest = 0.5 * gaussian;
-        for (level, scale, expected) in
-            [(60.0, 2.0, tail_at(60.0, 2.0)), (1.0, 1e-3, lowest), (10.0, 1.5, tail_at(10.0, 1.5))]
-        {
+        for (level, scale, expected) in [
+            (60.0, 2.0, tail_at(60.0, 2.0)),
+            (1.0, 1e-3, lowest),
+            (10.0, 1.5, tail_at(10.0, 1.5)),
+            (200.0, 1.0, tail_at(200.0, 1.0)),
+        ] {
             let found = with(level, scale)[0];
             assert!((found.level - expected).abs() < 1e-9 && found.gaussian == gaussian, "{level}");
         }
